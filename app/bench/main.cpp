@@ -44,13 +44,10 @@ int run(int argc, char** argv) {
         return static_cast<int>(ExitCode::ok);
     }
     const std::vector<std::string> commands = {"sweep", "compare", "cuts", "selftest", "stress"};
-    const std::string nearest = nearestName(command, commands);
-    throw Error(ExitCode::usage,
-                command.empty()
-                    ? "a command is missing: sweep, compare, cuts, selftest or stress"
-                    : "unknown command " + command +
-                          (nearest.empty() ? "; sweep, compare, cuts, selftest or stress"
-                                           : "; did you mean " + nearest + "?"));
+    const std::string all = "sweep, compare, cuts, selftest or stress";
+    throw Error(ExitCode::usage, command.empty() ? "a command is missing: " + all
+                                                 : "unknown command " + command +
+                                                       didYouMean(command, commands, "; " + all));
 }
 
 }  // namespace

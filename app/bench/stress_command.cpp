@@ -24,10 +24,8 @@ const Case& caseNamed(const std::string& name) {
         if (c.name == name) return c;
         names.push_back(c.name);
     }
-    const std::string nearest = nearestName(name, names);
     throw Error(ExitCode::usage, "--only: there is no case '" + name + "'" +
-                                     (nearest.empty() ? "; --list prints them"
-                                                      : "; did you mean '" + nearest + "'?"));
+                                     didYouMean(name, names, "; --list prints them"));
 }
 
 // null where there is no bound.

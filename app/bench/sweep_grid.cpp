@@ -37,11 +37,10 @@ bool changesNothingMeasured(const SettingInfo& setting) {
 const SettingInfo& settingNamed(const std::string& key, const std::string& where) {
     const SettingInfo* setting = findSetting(key);
     if (!setting) {
-        std::vector<std::string> keys = {std::string(kDistributionKey)};
-        for (const SettingInfo& known : settingsTable()) keys.emplace_back(known.key);
-        const std::string nearest = nearestName(key, keys);
+        std::vector<std::string> keys = namesIn(settingsTable(), &SettingInfo::key);
+        keys.emplace_back(kDistributionKey);
         refuse(where + ": unknown setting '" + key + "'" +
-               (nearest.empty() ? "; --help lists all" : "; did you mean '" + nearest + "'?"));
+               didYouMean(key, keys, "; --help lists all"));
     }
     if (changesNothingMeasured(*setting)) {
         refuse(where + ": '" + key + "' changes only what is shown, not what is measured");
@@ -114,9 +113,7 @@ std::string oneDistribution(const std::string& text, const std::string& where) {
     if (std::find(kDistributions.begin(), kDistributions.end(), text) != kDistributions.end()) {
         return text;
     }
-    const std::string nearest = nearestName(text, kDistributions);
-    refuse(where + ": '" + text + "' is not one of single, bounces, particles, random" +
-           (nearest.empty() ? "" : "; did you mean " + nearest + "?"));
+    refuse(where + ": " + notOneOf(text, kDistributions));
 }
 
 void checkAxes(const Settings& base, std::span<const SweepAxis> axes) {

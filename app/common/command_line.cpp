@@ -11,6 +11,7 @@
 #include "app/common/output_names.h"
 #include "app/common/program_version.h"
 #include "megaviews/core/error.h"
+#include "megaviews/core/text.h"
 #include "megaviews/scene/load_scene.h"
 #include "megaviews/settings/presets.h"
 #include "megaviews/settings/settings_table.h"
@@ -38,11 +39,7 @@ Enum oneOf(const std::string& text, const std::vector<std::string>& names,
     for (std::size_t i = 0; i < names.size(); ++i) {
         if (text == names[i]) return static_cast<Enum>(i);
     }
-    std::string list;
-    for (const std::string& name : names) list.append(list.empty() ? "" : ", ").append(name);
-    const std::string nearest = nearestName(text, names);
-    throw Error(ExitCode::usage, where + ": '" + text + "' is not one of " + list +
-                                     (nearest.empty() ? "" : "; did you mean " + nearest + "?"));
+    throw Error(ExitCode::usage, where + ": " + notOneOf(text, names));
 }
 
 template <typename T>
@@ -73,20 +70,13 @@ Apply choice(Enum RunOptions::*member, const std::vector<std::string>& names) {
     };
 }
 
-std::string metricNames() {
-    std::string names;
-    for (const MetricInfo& info : metricsTable()) {
-        names.append(names.empty() ? "" : ", ").append(info.name);
-    }
-    return names;
-}
-
 std::vector<RunFlag> runFlags() {
     using R = RunOptions;
     constexpr auto viewer = OptionSet::viewer;
     constexpr auto both = OptionSet::benchmark;
     constexpr double kMostFrames = 1e6;
     const std::vector<std::string> pictures = {".png", ".exr"};
+    const std::string metrics = joined(namesIn(metricsTable(), &MetricInfo::name), ", ");
     return {
         {"--headless", "", "Output", "Render without a window; needs no display.", viewer,
          give(&R::headless, true)},
@@ -140,8 +130,7 @@ std::vector<RunFlag> runFlags() {
          "numbers are display values.",
          viewer, [](R& r, Text name, Text) { r.measure.referenceFile = name; }},
         {"--metrics", "all|NAME,NAME", "Measure",
-         "Errors to print, one a line: " + metricNames() + ". [all that the reference allows]",
-         viewer,
+         "Errors to print, one a line: " + metrics + ". [all that the reference allows]", viewer,
          [](R& r, Text text, Text where) { r.measure.metrics = metricsFromText(text, where); }},
         {"--threshold", "METRIC:VALUE", "Measure",
          "Leave with exit code 1 if an error is larger, or a psnr or ssim lower; repeatable.",
@@ -259,12 +248,9 @@ Parser::GivenSetting settingOfPair(const std::string& text) {
     const std::string key = text.substr(0, equals);
     const SettingInfo* setting = findSetting(key);
     if (!setting) {
-        std::vector<std::string> keys;
-        for (const SettingInfo& known : settingsTable()) keys.emplace_back(known.key);
-        const std::string nearest = nearestName(key, keys);
         throw Error(ExitCode::usage,
                     "-D: unknown setting '" + key + "'" +
-                        (nearest.empty() ? "" : "; did you mean '" + nearest + "'?"));
+                        didYouMean(key, namesIn(settingsTable(), &SettingInfo::key)));
     }
     return {setting, text.substr(equals + 1), "-D " + key};
 }
@@ -272,9 +258,8 @@ Parser::GivenSetting settingOfPair(const std::string& text) {
 void applyPresetNamed(CommandLine& line, const std::string& name) {
     const PresetInfo* preset = findPreset(name);
     if (!preset) {
-        std::vector<std::string> names;
-        for (const PresetInfo& known : presetsTable()) names.emplace_back(known.name);
-        oneOf<int>(name, names, "--preset");
+        const std::vector<std::string> names = namesIn(presetsTable(), &PresetInfo::name);
+        throw Error(ExitCode::usage, "--preset: " + notOneOf(name, names));
     }
     for (std::string& key : applyPreset(line.settings, *preset)) {
         line.run.given.push_back(std::move(key));
@@ -287,10 +272,8 @@ void applyPresetNamed(CommandLine& line, const std::string& name) {
     if (!option.starts_with("-")) {
         throw Error(ExitCode::usage, "'" + option + "': only one scene can be given");
     }
-    const std::string nearest = nearestName(option, names);
     throw Error(ExitCode::usage,
-                "unknown option " + option +
-                    (nearest.empty() ? "; --help lists all" : "; did you mean " + nearest + "?"));
+                "unknown option " + option + didYouMean(option, names, "; --help lists all"));
 }
 
 // An empty value may come from a shell variable that is not set. To ignore it would leave out what
@@ -379,11 +362,8 @@ void Parser::addSources(OptionSet options) {
         "Read settings from a JSON file instead of $XDG_CONFIG_HOME/megaviews/config.json.");
     describe(app.add_flag("--no-config"), "", "Setup", "Read no configuration file.")
         ->excludes(file);
-    std::string list;
-    for (const PresetInfo& known : presetsTable()) {
-        list.append(list.empty() ? "" : "|").append(known.name);
-    }
-    describe(app.add_option("--preset", preset), list, "Setup",
+    const std::string presets = joined(namesIn(presetsTable(), &PresetInfo::name), "|");
+    describe(app.add_option("--preset", preset), presets, "Setup",
              "Take a named set of settings; what else is on the line goes first.");
     if (options != OptionSet::viewer) return;
     describe(app.add_option("--load-state", state), "FILE.json|FILE.png|FILE.exr", "Setup",

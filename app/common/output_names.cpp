@@ -74,10 +74,8 @@ void requireExtension(const std::string& file, const std::vector<std::string>& a
                       const std::string& where) {
     const std::string extension = extensionOf(file);
     if (std::find(allowed.begin(), allowed.end(), extension) != allowed.end()) return;
-    std::string list;
-    for (const std::string& name : allowed) list.append(list.empty() ? "" : " or ").append(name);
-    throw Error(ExitCode::usage,
-                where + ": '" + file + "' must end in " + list + ": it chooses the format");
+    throw Error(ExitCode::usage, where + ": '" + file + "' must end in " + joined(allowed, " or ") +
+                                     ": it chooses the format");
 }
 
 void requireJson(const std::string& file, const std::string& where) {

@@ -195,18 +195,13 @@ std::string ending(const Source& source, const std::string& file,
                    const std::vector<std::string>& allowed) {
     const std::string extension = extensionOf(file);
     if (std::find(allowed.begin(), allowed.end(), extension) != allowed.end()) return file;
-    std::string list;
-    for (const std::string& name : allowed) list.append(list.empty() ? "" : " or ").append(name);
-    source.refuse(file, "must end in " + list);
+    source.refuse(file, "must end in " + joined(allowed, " or "));
 }
 
 const SettingInfo& settingOf(const Source& source, const std::string& key) {
     if (const SettingInfo* setting = findSetting(key)) return *setting;
-    std::vector<std::string> keys;
-    for (const SettingInfo& known : settingsTable()) keys.emplace_back(known.key);
-    const std::string nearest = nearestName(key, keys);
     source.fail("unknown setting '" + key + "'" +
-                (nearest.empty() ? "" : "; did you mean " + nearest + "?"));
+                didYouMean(key, namesIn(settingsTable(), &SettingInfo::key)));
 }
 
 // The value must read as one of the setting's, now rather than in the middle of a run.
@@ -356,13 +351,10 @@ constexpr Form kForms[] = {
 };
 
 [[noreturn]] void refuseUnknown(const Source& source, const std::string& word) {
-    std::vector<std::string> names;
-    for (const ActionInfo& action : actionsTable()) names.push_back(idOf(action));
+    std::vector<std::string> names = namesIn(actionsTable(), idOf);
     for (const Form& form : kForms) names.emplace_back(form.name);
-    const std::string nearest = nearestName(word, names);
-    source.fail(
-        "unknown action '" + word + "'" +
-        (nearest.empty() ? "; --list actions names all" : "; did you mean " + nearest + "?"));
+    source.fail("unknown action '" + word + "'" +
+                didYouMean(word, names, "; --list actions names all"));
 }
 
 Step readStep(const Source& source) {

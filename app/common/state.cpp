@@ -71,9 +71,7 @@ State stateFromJson(const nlohmann::json& json, std::string_view where) {
         } else if (key != "program") {
             const std::vector<std::string> known = {"schema",   "program", "scene", "sceneHash",
                                                     "settings", "playing", "speed"};
-            const std::string nearest = nearestName(key, known);
-            refuse(where, "unknown key '" + key + "'" +
-                              (nearest.empty() ? "" : "; did you mean '" + nearest + "'?"));
+            refuse(where, "unknown key '" + key + "'" + didYouMean(key, known));
         }
     }
     validate(state.settings);

@@ -1,6 +1,7 @@
 #pragma once
 // Text taken apart, and made fit for messages.
 
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -18,5 +19,21 @@ std::string_view trimmed(std::string_view text);  // without white space around 
 std::string lowered(std::string_view text);       // ASCII alone
 // What stands between any of the separators; one part more than there are of those.
 std::vector<std::string_view> splitAt(std::string_view text, std::string_view separators);
+
+// All of them with the separator between each two.
+template <typename Texts>
+std::string joined(const Texts& texts, std::string_view separator) {
+    std::string out;
+    for (const auto& text : texts) out.append(out.empty() ? "" : separator).append(text);
+    return out;
+}
+
+// A member of each row, the names of a table say.
+template <typename Table, typename Member>
+std::vector<std::string> namesIn(const Table& table, Member member) {
+    std::vector<std::string> names;
+    for (const auto& row : table) names.emplace_back(std::invoke(member, row));
+    return names;
+}
 
 }  // namespace mv

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "megaviews/core/error.h"
+#include "megaviews/core/text.h"
 #include "megaviews/settings/settings_table.h"
 
 namespace mv {
@@ -15,15 +16,8 @@ using Json = nlohmann::ordered_json;
 
 const MetricInfo& metricNamed(const std::string& name, const std::string& where) {
     if (const MetricInfo* info = findMetric(name)) return *info;
-    std::vector<std::string> names;
-    std::string list;
-    for (const MetricInfo& info : metricsTable()) {
-        names.emplace_back(info.name);
-        list.append(list.empty() ? "" : ", ").append(info.name);
-    }
-    const std::string nearest = nearestName(name, names);
-    throw Error(ExitCode::usage, where + ": '" + name + "' is not one of " + list +
-                                     (nearest.empty() ? "" : "; did you mean " + nearest + "?"));
+    throw Error(ExitCode::usage,
+                where + ": " + notOneOf(name, namesIn(metricsTable(), &MetricInfo::name)));
 }
 
 void addOnce(std::vector<Metric>& metrics, Metric metric) {

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "megaviews/core/error.h"
+#include "megaviews/core/text.h"
 #include "megaviews/scene/builtin_mesh.h"
 #include "megaviews/scene/load_scene.h"
 #include "megaviews/scene/rigged_scene.h"
@@ -83,7 +84,6 @@ std::vector<std::string> builtinNames() {
 
 Scene makeBuiltin(const std::string& name, const LoadOptions& options) {
     std::string plain = name.rfind("builtin:", 0) == 0 ? name.substr(8) : name;
-    std::string known;
     for (const Entry& e : kEntries) {
         if (plain == e.name) {
             report(options.progress, "scene", 0.0f);
@@ -99,10 +99,9 @@ Scene makeBuiltin(const std::string& name, const LoadOptions& options) {
             report(options.progress, "scene", 1.0f);
             return scene;
         }
-        known += std::string(known.empty() ? "" : ", ") + "builtin:" + e.name;
     }
-    throw Error(ExitCode::input,
-                "no scene is called \"builtin:" + plain + "\"; there are " + known);
+    throw Error(ExitCode::input, "no scene is called \"builtin:" + plain + "\"; there are " +
+                                     joined(builtinNames(), ", "));
 }
 
 }  // namespace mv

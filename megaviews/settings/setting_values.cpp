@@ -119,21 +119,12 @@ bool boolFromText(std::string_view text, std::string_view where) {
     refuse(where, text, "is neither on nor off");
 }
 
-std::string joined(const std::vector<std::string_view>& names, std::string_view separator) {
-    std::string out;
-    for (const auto name : names) out.append(out.empty() ? "" : separator).append(name);
-    return out;
-}
-
 int indexOf(const std::vector<std::string_view>& names, std::string_view text,
             std::string_view where) {
     const auto it = std::find(names.begin(), names.end(), text);
     if (it != names.end()) return static_cast<int>(it - names.begin());
-    const std::string nearest =
-        nearestName(text, std::vector<std::string>(names.begin(), names.end()));
-    refuse(where, text,
-           "is not one of " + joined(names, ", ") +
-               (nearest.empty() ? "" : "; did you mean " + nearest + "?"));
+    const std::vector<std::string> known(names.begin(), names.end());
+    throw Error(ExitCode::usage, std::string(where) + ": " + notOneOf(text, known));
 }
 
 int membersFromText(const SetField& of, std::string_view text, std::string_view where) {
@@ -382,12 +373,9 @@ std::vector<std::string> applyJson(Settings& settings, const nlohmann::json& obj
             continue;
         }
         if (findSetting(key)) continue;
-        std::vector<std::string> known;
-        for (const SettingInfo& info : settingsTable()) known.emplace_back(info.key);
-        const std::string nearest = nearestName(key, known);
         throw Error(ExitCode::usage,
                     place + ": unknown setting '" + key + "'" +
-                        (nearest.empty() ? "" : "; did you mean '" + nearest + "'?"));
+                        didYouMean(key, namesIn(settingsTable(), &SettingInfo::key)));
     }
     std::vector<std::string> keys;
     Settings result = settings;                     // all or nothing
@@ -434,6 +422,17 @@ std::string nearestName(std::string_view name, std::span<const std::string> cand
         }
     }
     return nearest;
+}
+
+std::string didYouMean(std::string_view name, std::span<const std::string> names,
+                       std::string_view otherwise) {
+    const std::string nearest = nearestName(name, names);
+    return nearest.empty() ? std::string(otherwise) : "; did you mean " + nearest + "?";
+}
+
+std::string notOneOf(std::string_view name, std::span<const std::string> names) {
+    return "'" + std::string(name) + "' is not one of " + joined(names, ", ") +
+           didYouMean(name, names);
 }
 
 }  // namespace mv

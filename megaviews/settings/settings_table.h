@@ -119,5 +119,10 @@ std::string nameOfRules(uint rules);
 
 // The candidate that `name` is probably a misspelling of, or empty.
 std::string nearestName(std::string_view name, std::span<const std::string> candidates);
+// Of a name that is none of these: "; did you mean vpls?", or `otherwise` where none is near.
+std::string didYouMean(std::string_view name, std::span<const std::string> names,
+                       std::string_view otherwise = "");
+// "'vpl' is not one of vpls, maps; did you mean vpls?"
+std::string notOneOf(std::string_view name, std::span<const std::string> names);
 
 }  // namespace mv

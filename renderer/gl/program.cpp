@@ -311,10 +311,8 @@ void Program::link(const std::vector<Source>& sources, Compiled& out) const {
         const std::string log = infoLog(
             out.id, [](auto... a) { glGetProgramiv(a...); },
             [](auto... a) { glGetProgramInfoLog(a...); });
-        std::string names;
-        for (const std::string& file : files_) names += (names.empty() ? "" : ", ") + file;
-        throw Error(ExitCode::graphics,
-                    "program \"" + label_ + "\" (" + names + ") does not link:\n" + log);
+        throw Error(ExitCode::graphics, "program \"" + label_ + "\" (" + joined(files_, ", ") +
+                                            ") does not link:\n" + log);
     }
     glObjectLabel(GL_PROGRAM, out.id, static_cast<GLsizei>(label_.size()), label_.data());
     if (stageOf(files_.front()) == GL_COMPUTE_SHADER) {

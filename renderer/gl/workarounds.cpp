@@ -13,6 +13,7 @@
 
 #include "megaviews/core/error.h"
 #include "megaviews/core/large_vector.h"
+#include "megaviews/core/text.h"
 #include "renderer/gl/buffer.h"
 #include "renderer/gl/texture.h"
 #include "renderer/gl/vertex_array.h"
@@ -100,16 +101,15 @@ std::atomic<bool> driverTakesLargePages{false};  // read in any thread
 void applySwitch(std::string_view text) {
     const std::size_t equals = std::min(text.find('='), text.size());
     const std::string_view name = text.substr(0, equals), value = text.substr(equals);
-    std::string names;
     for (const WorkaroundInfo& info : kWorkarounds) {
         if (info.name == name && (value == "=on" || value == "=off")) {
             chosen.set(static_cast<std::size_t>(info.workaround), value == "=on");
             return;
         }
-        names.append(names.empty() ? "" : ", ").append(info.name);
     }
     throw Error(ExitCode::usage, "MEGAVIEWS_GL_WORKAROUNDS: \"" + std::string(text) +
-                                     "\" is not NAME=on or NAME=off with a NAME of " + names);
+                                     "\" is not NAME=on or NAME=off with a NAME of " +
+                                     joined(namesIn(kWorkarounds, &WorkaroundInfo::name), ", "));
 }
 
 }  // namespace

@@ -60,8 +60,8 @@ TEST(SweepGrid, Ranges) {
 TEST(SweepGrid, RefusesWithOneSentence) {
     for (const auto& [text, part] : std::vector<std::pair<std::string, std::string>>{
              {"vpls", "is not KEY=VALUES"},
-             {"vpl=4", "unknown setting 'vpl'; did you mean 'vpls'?"},
-             {"distributoin=single", "did you mean 'distribution'?"},
+             {"vpl=4", "unknown setting 'vpl'; did you mean vpls?"},
+             {"distributoin=single", "did you mean distribution?"},
              {"=4", "unknown setting ''"},
              {"vpls=", "'' is not a number"},
              {"vpls=4,,8", "'' is not a number"},

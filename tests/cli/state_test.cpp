@@ -227,9 +227,9 @@ TEST(States, BadFilesAreCode3) {
         return sandbox.megaviews({"--headless", "--load-state", file, "-o", "x.png"});
     };
     expectRefused(load("bad.json"), 3, {"bad.json: not valid JSON"});
-    expectRefused(load("key.json"), 3, {"key.json: unknown key 'sped'; did you mean 'speed'?"});
+    expectRefused(load("key.json"), 3, {"key.json: unknown key 'sped'; did you mean speed?"});
     expectRefused(load("setting.json"), 3,
-                  {"setting.json: settings: unknown setting 'vpl'; did you mean 'vpls'?"});
+                  {"setting.json: settings: unknown setting 'vpl'; did you mean vpls?"});
     expectRefused(load("gone.json"), 3, {"gone.json: its scene '", "gone.glb' is missing"});
     expectRefused(load("absent.json"), 3, {"absent.json"});
     expectRefused(load("absent.png"), 3, {"'absent.png' cannot be read"});
