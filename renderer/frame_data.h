@@ -138,6 +138,11 @@ struct TracedViews {
     GpuViews views;
     GpuViewHierarchy tree;
     std::uint64_t version = 0;  // of the tree; 0: not built
+    // Of its trees and of what makes them.
+    std::uint64_t treeBytes() const {
+        return hierarchyPass.bytes() + tree.bytes() + mapViews.pass.bytes() +
+               mapViews.subset.bytes();
+    }
 };
 
 // What a set of samples is gathered from.

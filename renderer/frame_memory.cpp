@@ -22,10 +22,14 @@ std::vector<MemoryUse> FrameRenderer::Impl::memory() const {
         if (!side || !side->visibility) continue;
         for (const MemoryUse& use : side->visibility->memory()) add(use.name, use.usedBytes);
     }
-    add("views",
-        views.frame.views.views.bytes() + (views.ofSet ? views.ofSet->views.views.bytes() : 0));
-    std::uint64_t viewTrees = views.frame.tree.bytes() + views.frame.mapViews.subset.bytes();
-    if (views.ofSet) viewTrees += views.ofSet->tree.bytes() + views.ofSet->mapViews.subset.bytes();
+    std::uint64_t viewBytes = views.frame.views.views.bytes() + views.spare.views.bytes();
+    std::uint64_t viewTrees = views.frame.treeBytes();
+    if (views.next) viewBytes += views.next->views.views.bytes();
+    if (views.ofSet) {
+        viewBytes += views.ofSet->views.views.bytes();
+        viewTrees += views.ofSet->treeBytes();
+    }
+    add("views", viewBytes);
     std::uint64_t gather = gatherPass.bytes(), setMaps = 0;
     std::uint64_t pictureBytes = picture.display.bytes() + picture.radiance.bytes() +
                                  surfaces.direct.bytes() + late.front.bytes() +

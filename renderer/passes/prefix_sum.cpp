@@ -39,4 +39,10 @@ void PrefixSum::run(const Counts& counts, std::uint32_t count, const gl::Buffer&
     sum_.dispatchInvocations(segments);
 }
 
+std::uint64_t PrefixSum::bytes() const {
+    std::uint64_t sum = 0;
+    for (const Scratch& scratch : scratch_) sum += scratch.totals.bytes() + scratch.bases.bytes();
+    return sum;
+}
+
 }  // namespace mv

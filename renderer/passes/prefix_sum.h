@@ -17,6 +17,7 @@ class PrefixSum {
     // out[i] = counts[0] + ... + counts[i - 1] for i < count. The counts have just been produced by
     // storage writes; out is to be read behind a barrier.
     void exclusive(const Counts& counts, std::uint32_t count, const gl::Buffer& out);
+    std::uint64_t bytes() const;
 
   private:
     void run(const Counts& counts, std::uint32_t count, const gl::Buffer& out, std::size_t depth);

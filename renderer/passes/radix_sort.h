@@ -22,6 +22,10 @@ class RadixSort {
     // One number: how many pairs are left.
     gl::TexelBuffer<std::uint32_t>& alive() { return alive_; }
     std::uint32_t count() const { return count_; }
+    std::uint64_t bytes() const {
+        return pairs_[0].bytes() + pairs_[1].bytes() + counts_.bytes() + begins_.bytes() +
+               alive_.bytes() + prefixSum_.bytes();
+    }
 
   private:
     std::uint32_t count_ = 0;

@@ -373,4 +373,14 @@ void ViewHierarchyPass::build(const ViewHierarchyOptions& options, gl::Profiler&
         impl_->buildTree(options, out);
 }
 
+std::uint64_t ViewHierarchyPass::bytes() const {
+    const Impl& m = *impl_;
+    std::uint64_t sum = m.radix.bytes() + m.prefixSum.bytes() + m.starts.bytes() +
+                        m.bounds.bytes() + m.blocks.bytes();
+    for (const Impl::Placed& p : m.placed) {
+        sum += p.viewLevels.bytes() + p.counts.bytes() + p.begins.bytes() + p.table.bytes();
+    }
+    return sum;
+}
+
 }  // namespace mv

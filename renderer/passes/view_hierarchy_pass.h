@@ -33,6 +33,7 @@ class ViewHierarchyPass {
     // After build() of both hierarchies: writes whose map each view of the first takes. views: of
     // all, and those of chooseForMaps(), which made the hierarchy of the second.
     void borrowMaps(const GpuViewHierarchy& all, gl::Profiler& profiler, GpuMapViews& out);
+    std::uint64_t bytes() const;  // of what it sorts and sums with
 
   private:
     struct Impl;
