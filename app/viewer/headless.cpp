@@ -83,22 +83,6 @@ void checkResolution(Size picture) {
 
 void announce(const std::string& file) { std::printf("%s\n", file.c_str()); }
 
-void saveMapsOf(const FrameRenderer& renderer, const RootCube& root, const std::string& file) {
-    const ReadMaps read = renderer.readMaps();
-    MapsToSave maps;
-    maps.mapRes = read.maps.mapRes;
-    maps.centers = read.maps.centers;
-    maps.mapOfSlot = read.mapOfSlot;
-    maps.root = root;
-    const std::uint64_t texelsPerMap = mapTexels(static_cast<uint>(read.maps.mapRes));
-    maps.read = [&](std::uint64_t firstMap, std::span<std::uint32_t> texels) {
-        const auto begin =
-            read.maps.texels.begin() + static_cast<std::ptrdiff_t>(firstMap * texelsPerMap);
-        std::copy_n(begin, texels.size(), texels.begin());
-    };
-    saveMaps(file, maps);
-}
-
 // A scene that cannot be read is the better reason where there is no OpenGL either.
 GraphicsContext contextFor(const RunOptions& options, const Settings& settings) {
     try {
@@ -145,6 +129,7 @@ class HeadlessRun {
     void drawWindow(const std::string& file);
     void keep();
     void writeViews() const;
+    void writeMaps() const;
     void writeState() const;
     void writeStatistics(bool partial) const;
 
@@ -160,6 +145,7 @@ class HeadlessRun {
         Settings settings;  // in effect
         State state;
         ViewSet views;                     // where they are to be written
+        ReadMaps maps;                     // the same
         std::optional<SceneToSave> scene;  // the same; refers to the assets
     } finished_;
     std::optional<Measurement> measured_;
@@ -258,6 +244,7 @@ void HeadlessRun::renderFrames() {
             finished_.settings = session_.picture().effective();
             finished_.state = stateOf(session_.pictureInfo());
             if (!options_.saveViewsFile.empty()) finished_.views = renderer().readViews();
+            if (!options_.saveMapsFile.empty()) finished_.maps = renderer().readMaps();
             // What moves will not stand still until it is written.
             if (!options_.saveSceneFile.empty() && !finished_.assets->scene.moving) {
                 finished_.scene.emplace(session_.sceneToSave());
@@ -366,10 +353,7 @@ void HeadlessRun::writeResults() {
     const auto lock = kept_.lock();  // once, and to the end
     if (finished_.statistics.frames() > 0) {
         writeViews();
-        if (!options_.saveMapsFile.empty()) {
-            saveMapsOf(renderer(), session_.assets()->scene.root, options_.saveMapsFile);
-            for (const std::string& file : mapsFiles(options_.saveMapsFile)) announce(file);
-        }
+        writeMaps();
         if (!options_.saveSceneFile.empty()) {
             session_.saveScene(options_.saveSceneFile);
             announce(options_.saveSceneFile);
@@ -384,6 +368,12 @@ void HeadlessRun::writeViews() const {
     if (options_.saveViewsFile.empty()) return;
     saveViews(options_.saveViewsFile, finished_.views, finished_.assets->scene.root);
     announce(options_.saveViewsFile);
+}
+
+void HeadlessRun::writeMaps() const {
+    if (options_.saveMapsFile.empty()) return;
+    saveMaps(options_.saveMapsFile, finished_.maps, finished_.assets->scene.root);
+    for (const std::string& file : mapsFiles(options_.saveMapsFile)) announce(file);
 }
 
 void HeadlessRun::writeState() const {
@@ -429,8 +419,10 @@ void HeadlessRun::keep() {
     writeState();
     statisticsWritten_ = true;
     writeStatistics(true);
+    // What takes longest.
+    writeMaps();
     if (!finished_.scene) return;
-    saveScene(options_.saveSceneFile, *finished_.scene);  // takes longest
+    saveScene(options_.saveSceneFile, *finished_.scene);
     announce(options_.saveSceneFile);
 }
 

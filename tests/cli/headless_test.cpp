@@ -466,10 +466,10 @@ TEST(Headless, InterruptKeepsWhatIsFinished) {
     for (const char* samples : {"8", "1024"}) {
         const Sandbox sandbox;
         const pid_t pid = sandbox.start(
-            "megaviews",
-            smallPicture({"--frames", "100000", "--resolution", "320x180", "--gather-samples",
-                          samples, "-o", "f.png", "--stats", "s.json", "--save-views", "v.ply",
-                          "--save-scene", "g.glb", "--save-state", "t.json"}));
+            "megaviews", smallPicture({"--frames", "100000", "--resolution", "320x180",
+                                       "--gather-samples", samples, "-o", "f.png", "--stats",
+                                       "s.json", "--save-views", "v.ply", "--save-maps", "m.npy",
+                                       "--save-scene", "g.glb", "--save-state", "t.json"}));
         const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(60);
         while (!std::filesystem::exists(sandbox.file("f.0000.png")) && kill(pid, 0) == 0 &&
                std::chrono::steady_clock::now() < deadline) {
@@ -487,7 +487,8 @@ TEST(Headless, InterruptKeepsWhatIsFinished) {
         EXPECT_EQ(s.at("frames").at("partial"), true);
         EXPECT_GE(s.at("frames").at("measured"), 1);
         EXPECT_EQ(readPicture(sandbox.file("f.0000.png")).width, 320);
-        for (const char* file : {"v.ply", "g.glb", "t.json"}) {
+        for (const char* file :
+             {"v.ply", "m.npy", "m.centres.npy", "m.views.npy", "g.glb", "t.json"}) {
             EXPECT_FALSE(sandbox.text(file).empty()) << file;
         }
     }

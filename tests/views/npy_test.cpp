@@ -116,44 +116,33 @@ TEST_F(Npy, RefusesWhatItIsNot) {
 
 // ---------------------------------------------------------------- maps
 
-struct Maps {
+struct Maps : ReadMaps {
     RootCube root{{100, 200, 300}, 8};
-    std::vector<glm::vec3> centers;
-    std::vector<std::uint32_t> texels, mapOfSlot;
-    int mapRes = 8;
-    explicit Maps(std::uint32_t count, int res = 8) : mapRes(res) {
+    explicit Maps(std::uint32_t count, int res = 8) {
+        maps.mapRes = res;
         for (std::uint32_t m = 0; m < count; ++m) {
-            centers.push_back(glm::vec3(0.25f, 0.5f, 0.5f + 0.0001f * static_cast<float>(m)));
+            maps.centers.push_back(glm::vec3(0.25f, 0.5f, 0.5f + 0.0001f * static_cast<float>(m)));
             for (int i = 0; i < 2 * res * res; ++i) {
                 const float depth = 0.001f * static_cast<float>(i) + static_cast<float>(m);
-                texels.push_back(i % 7 == 3 ? kNone : floatBitsToUint(depth));
+                maps.texels.push_back(i % 7 == 3 ? kNone : floatBitsToUint(depth));
             }
             mapOfSlot.insert(mapOfSlot.end(), {m, kNone});
         }
-    }
-    void save(const fs::path& file) const {
-        MapsToSave maps{mapRes, centers, mapOfSlot, root, {}};
-        const std::uint64_t size = 2ull * static_cast<std::uint64_t>(mapRes * mapRes);
-        maps.read = [&, size](std::uint64_t first, std::span<std::uint32_t> out) {
-            std::copy_n(texels.begin() + static_cast<std::ptrdiff_t>(first * size), out.size(),
-                        out.begin());
-        };
-        saveMaps(file, maps);
     }
 };
 
 TEST_F(Npy, MapsAreDistancesInWorldUnits) {
     for (const auto& [count, res] : {std::pair{0u, 8}, {1u, 8}, {5u, 8}, {70u, 128}}) {
-        const Maps maps(count, res);
-        maps.save(folder_ / "maps.npy");
+        const Maps made(count, res);
+        saveMaps(folder_ / "maps.npy", made, made.root);
         const auto depth = readNpy<float>(folder_ / "maps.npy");
         const auto r = static_cast<std::uint64_t>(res);
         EXPECT_EQ(depth.shape, (std::vector<std::uint64_t>{count, 2, r, r}));
         for (std::size_t i = 0; i < depth.elements.size(); ++i) {
-            if (maps.texels[i] == kNone) {
+            if (made.maps.texels[i] == kNone) {
                 ASSERT_EQ(depth.elements[i], std::numeric_limits<float>::infinity());
             } else {
-                ASSERT_FLOAT_EQ(depth.elements[i], 8 * uintBitsToFloat(maps.texels[i])) << i;
+                ASSERT_FLOAT_EQ(depth.elements[i], 8 * uintBitsToFloat(made.maps.texels[i])) << i;
             }
         }
         const auto centres = readNpy<double>(folder_ / "maps.centres.npy");
@@ -163,7 +152,7 @@ TEST_F(Npy, MapsAreDistancesInWorldUnits) {
             EXPECT_EQ(centres.elements[3 * m + 1], 204.0);
         }
         const auto views = readNpy<std::uint32_t>(folder_ / "maps.views.npy");
-        EXPECT_EQ(views.elements, maps.mapOfSlot);
+        EXPECT_EQ(views.elements, made.mapOfSlot);
     }
     EXPECT_EQ(filesInFolder(), 3u);
 }
@@ -172,8 +161,8 @@ TEST_F(Npy, NumPyReadsThem) {
     if (std::system("/usr/bin/python3 -c 'import numpy' 2>/dev/null") != 0) {
         GTEST_SKIP() << "no NumPy for /usr/bin/python3";
     }
-    const Maps maps(3);
-    maps.save(folder_ / "m.npy");
+    const Maps made(3);
+    saveMaps(folder_ / "m.npy", made, made.root);
     const std::string f = folder_.string();
     const std::string script =
         "import numpy as n\n"
