@@ -134,8 +134,7 @@ void FrameRenderer::Impl::fitExposure(const Settings& settings, double tolerance
     exposure.fittedEarly = awaitsReferences();
     if (exposure.fittedEarly) return;
     spdlog::info("exposure fitted: {:+.2f} EV", *exposure.fittedEv);
-    constexpr double kDarkEv = 20;  // what a thousandth of starlight takes
-    if (!ev || *ev > kDarkEv) spdlog::warn("next to no light reaches what is in sight");
+    if (isDark(ev, surfaces.gbuffer)) spdlog::warn("next to no light reaches what is in sight");
 }
 
 void FrameRenderer::Impl::show(const Settings& settings) {

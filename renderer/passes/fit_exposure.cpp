@@ -87,4 +87,18 @@ std::optional<double> fitExposure(const gl::Texture& radiance, const GBuffer& gb
     return ev;
 }
 
+bool isDark(std::optional<double> fittedEv, const GBuffer& gbuffer) {
+    constexpr double kDarkEv = 20;  // what a thousandth of starlight takes
+    if (fittedEv) return *fittedEv > kDarkEv;
+    const std::vector<float> albedo = gbuffer.albedo.readFloats(4);
+    const std::vector<float> emission = gbuffer.emission.readFloats(4);
+    std::size_t black = 0, glowing = 0;
+    for (std::size_t i = 0; i + 3 < albedo.size(); i += 4) {
+        const bool glows = luminanceOf(&emission[i]) > 0;
+        glowing += glows;
+        black += !glows && luminanceOf(&albedo[i]) > 0;
+    }
+    return black > glowing;
+}
+
 }  // namespace mv

@@ -19,4 +19,9 @@ namespace mv {
 std::optional<double> fitExposure(const gl::Texture& radiance, const GBuffer& gbuffer,
                                   ToneMap toneMap);
 
+// Does next to no light reach what is in sight, by the exposure that was fitted to it? If there was
+// nothing to fit to, because more of the picture is surfaces that would reflect light than such as
+// glow: neither these nor the void nor what is black by itself say anything of light. Synchronises.
+bool isDark(std::optional<double> fittedEv, const GBuffer& gbuffer);
+
 }  // namespace mv

@@ -290,6 +290,17 @@ TEST_F(TonemapTest, ExposureBringsTheLogMeanToMiddleGrey) {
     EXPECT_FALSE(fitExposure(constant(4, 4, {1, 1, 1, 1}), nothing, ToneMap::aces));
 }
 
+TEST_F(TonemapTest, DarkIsWhatWouldReflectLight) {
+    const glm::vec4 surface(0, 0, 0, 1), nowhere(0), white(1), black(0, 0, 0, 1), glow(1, 0, 0, 0);
+    EXPECT_TRUE(isDark({}, gbuffer(2, 2, surface, {}, white, nowhere)));
+    EXPECT_FALSE(isDark({}, gbuffer(2, 2, surface, {}, white, glow)));
+    EXPECT_FALSE(isDark({}, gbuffer(2, 2, surface, {}, black, nowhere)));
+    EXPECT_FALSE(isDark({}, gbuffer(2, 2, nowhere, {}, nowhere, nowhere)));
+    const GBuffer lit = gbuffer(2, 2, surface, {}, white, nowhere);
+    EXPECT_FALSE(isDark(10, lit));
+    EXPECT_TRUE(isDark(30, lit));
+}
+
 TEST_F(TonemapTest, ExposureLeavesAtMostTwoPercentWhite) {
     const GBuffer g = gbuffer(10, 20, {0, 0, 0, 1}, {}, {}, {0, 0, 0, 0});
     const auto fitted = [&](std::size_t bright, ToneMap toneMap = ToneMap::aces) {
