@@ -11,7 +11,9 @@
 #include "megaviews/core/hash.h"
 #include "megaviews/core/input_file.h"
 #include "megaviews/io/npy.h"
+#include "megaviews/scene/triangle_bvh.h"
 #include "megaviews/settings/settings_table.h"
+#include "shaders/shared/bvh.glsl"
 #include "shaders/shared/paraboloid.glsl"
 #include "shaders/shared/random.glsl"
 
@@ -124,6 +126,8 @@ IrradianceImage readPartial(const fs::path& file, int width, int height) {
 std::string describeScene(const Scene& scene) {
     std::string text = line("scene", scene.contentHash.empty() ? scene.hash : scene.contentHash);
     if (scene.positionStep > 0) text += line("position-step", exact(double{scene.positionStep}));
+    const float lift = rayLift(scene);
+    if (lift < kVplOffset) text += line("ray-lift", exact(double{lift}));
     return text;
 }
 

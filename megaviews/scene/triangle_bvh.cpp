@@ -292,6 +292,41 @@ class Builder {
     const Progress& progress_;
 };
 
+// The longest edge of the box between an eighth and seven eighths of all corners along each axis:
+// where most of a scene is, however far a ground or a backdrop goes on around it.
+float edgeOfMost(const Scene& scene) {
+    const std::size_t step = 1 + scene.triangles.size() / 32768;
+    float edge = 0;
+    std::vector<float> corners;
+    for (int axis = 0; axis < 3; ++axis) {
+        corners.clear();
+        for (std::size_t i = 0; i < scene.triangles.size(); i += step)
+            for (int k = 0; k < 3; ++k)
+                corners.push_back(scene.positions[scene.triangles[i][k]][axis]);
+        if (corners.empty()) return 1;
+        const auto at = [&](std::size_t rank) {
+            const auto place = corners.begin() + static_cast<std::ptrdiff_t>(rank);
+            std::nth_element(corners.begin(), place, corners.end());
+            return *place;
+        };
+        const std::size_t eighth = corners.size() / 8;
+        edge = std::max(edge, at(corners.size() - 1 - eighth) - at(eighth));
+    }
+    return edge;
+}
+
+float liftOf(std::uint32_t doubled) { return std::ldexp(kLeastLift, static_cast<int>(doubled)); }
+
+// How often bvhLift() doubles kLeastLift: to kVplOffset where most of a scene takes more than an
+// eighth of its cube, and to that many times less where it takes less; then to the grid's step.
+std::uint32_t doublingsOfLift(const Scene& scene) {
+    const float most = std::min(8 * edgeOfMost(scene), 1.0f) * kVplOffset;
+    std::uint32_t doubled = 0;
+    while (liftOf(doubled) < most) ++doubled;
+    while (doubled < kMostBvhLift && liftOf(doubled) < scene.positionStep) ++doubled;
+    return doubled;
+}
+
 // Which optional arrays the functions of bvh.glsl may read.
 std::uint32_t flagsOf(const Scene& scene) {
     std::uint32_t flags = scene.triangles.empty() ? kBvhEmpty : 0;
@@ -303,12 +338,7 @@ std::uint32_t flagsOf(const Scene& scene) {
         if (m.tints()) flags |= kBvhTints;
     }
     if (scene.needsFull()) flags |= kBvhGloss;
-    std::uint32_t lift = 0;
-    while (lift < kMostBvhLift &&
-           std::ldexp(kVplOffset, static_cast<int>(lift)) < scene.positionStep) {
-        ++lift;
-    }
-    return flags | lift << kBvhLiftBits;
+    return flags | doublingsOfLift(scene) << kBvhLiftBits;
 }
 
 // Four children at most.
@@ -444,6 +474,8 @@ float fitNodes(std::vector<BvhNode>& nodes, std::size_t first,
 }
 
 }  // namespace
+
+float rayLift(const Scene& scene) { return liftOf(doublingsOfLift(scene)); }
 
 TriangleBvh TriangleBvh::build(const Scene& scene, const Progress& progress) {
     TriangleBvh bvh;

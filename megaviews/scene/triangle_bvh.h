@@ -40,6 +40,9 @@ inline constexpr float kBvhPadding = 1.0f / (1 << 21);
 inline constexpr float kPoorBvh = 2;
 inline constexpr float kBvhPieces = 0.3f;  // share of the triangles that pieces may add
 
+// bvhLift() of a hierarchy that is built of the scene as it stands.
+float rayLift(const Scene& scene);
+
 struct TriangleBvh {
     glm::vec3 center{0};         // of the ball around the box of all triangles, wherever they move
     float radius = 0;            // root-cube units

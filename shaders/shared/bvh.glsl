@@ -59,12 +59,15 @@ MV_FN vec4 sampleTraceTexture(MV_BVH_PARAMS uint textureIndex, vec2 uv) {
 // surface.
 MV_CONST float kVplOffset = 0.02f / 1024.0f;
 
-// How far the starts of rays are lifted: kVplOffset, and in a scene whose positions were packed on
-// a grid (Scene::positionStep) that doubled until it is a step. Sheets that lay on each other, such
-// as the inner and outer faces of a box, are up to a step apart there, either before the other, and
-// rays begin above both.
+// How far the starts of rays are lifted, kLeastLift times a power of two (rayLift() of
+// megaviews/scene/triangle_bvh.h): kVplOffset in most scenes. Less where most of a scene is small
+// beside it, such as a cup on a ground of a kilometre. In a scene whose positions were packed on a
+// grid (Scene::positionStep) at least a step: sheets that lay on each other, such as the inner and
+// outer faces of a box, are up to a step apart there, either before the other, and rays begin above
+// both.
+MV_CONST float kLeastLift = kVplOffset / 16.0f;  // about 20 float steps
 MV_FN float bvhLift(MV_BVH_ONLY) {
-    return kVplOffset * float(1u << (bvhFlagsOf(MV_BVH_SELF) >> kBvhLiftBits));
+    return kLeastLift * float(1u << (bvhFlagsOf(MV_BVH_SELF) >> kBvhLiftBits));
 }
 
 // Whether rays meet what is clear and filled, as sight does: light goes through.

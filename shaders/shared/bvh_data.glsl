@@ -54,7 +54,7 @@ MV_CONST uint kBvhMirrors = 128u;  // some material mirrors (kMaterialMirrors)
 MV_CONST uint kBvhOfGloss = kBvhGloss | kBvhTints;  // what `lambert` materials do without
 MV_CONST uint kBvhEmpty = 16u;    // no triangle at all: nothing is fetched, nothing is hit
 MV_CONST uint kBvhLiftBits = 8u;  // from this bit on: what bvhLift() doubles by
-MV_CONST uint kMostBvhLift = 5u;
+MV_CONST uint kMostBvhLift = 9u;
 MV_CONST int kBvhStack = 64;  // nodes whose children may wait in a walk; the builder keeps to it
 
 #ifdef __cplusplus

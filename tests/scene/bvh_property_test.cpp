@@ -523,6 +523,32 @@ TEST(TriangleBvh, FollowsWhatMoves) {
 }
 
 // Where shading normals cancel, or a file has none, the face's own stands in.
+// Rays that begin above a cup are of no use to the table under it.
+TEST(TriangleBvh, RaysBeginNearWhatIsSmallOnALargeGround) {
+    Random random(7);
+    for (const float size : {1.0f, 0.3f, 0.1f, 0.01f, 1e-4f}) {
+        std::vector<glm::vec3> corners = randomSoup(random, 50, 0.2f);
+        for (glm::vec3& p : corners) p = glm::vec3(0.5f) + size * (p - glm::vec3(0.5f));
+        for (const glm::vec3& p :
+             {glm::vec3(0, 0, 0), {1, 0, 0}, {1, 0, 1}, {0, 0, 0}, {1, 0, 1}, {0, 0, 1}}) {
+            corners.push_back(p);
+        }
+        Scene scene = soupScene(corners);
+        const auto lift = [&] { return bvhLift(TriangleBvh::build(scene).data()); };
+        if (size > 0.2f) {
+            EXPECT_EQ(lift(), kVplOffset) << size;
+        } else {
+            EXPECT_LT(lift(), std::max(kVplOffset * 16 * size, 2e-6f)) << size;
+        }
+        EXPECT_GT(lift(), 1e-6f);
+        for (const float step : {3e-5f, 3e-4f}) {
+            scene.positionStep = step;
+            EXPECT_GE(lift(), step);
+            EXPECT_LT(lift(), 2 * step);
+        }
+    }
+}
+
 TEST(BvhSurface, WithoutAShadingNormalHasTheFaces) {
     Scene scene = testing::soupScene({{0.2f, 0.5f, 0.2f}, {0.8f, 0.5f, 0.2f}, {0.2f, 0.5f, 0.8f}});
     const TriangleBvh bvh = TriangleBvh::build(scene);
