@@ -60,6 +60,7 @@ void openRecent(Context& c) {
     const bool open = ImGui::BeginMenu("Open Recent", any);
     c.named("menu:Open Recent");
     if (!open) return;
+    const RecentFile* hovered = nullptr;
     for (std::size_t i = 0; i < c.model.recent.size(); ++i) {
         const RecentFile& file = c.model.recent[i];
         ImGui::PushID(static_cast<int>(i));
@@ -68,11 +69,15 @@ void openRecent(Context& c) {
             c.requests.openFile = file.path;
         }
         c.named("recent:" + std::to_string(i));
-        tooltip(file.path, file.exists ? "" : "This file is not there any more.");
+        const bool says = !file.exists || shown != file.path;
+        if (says && ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) hovered = &file;
         ImGui::PopID();
     }
     ImGui::Separator();
     if (ImGui::MenuItem("Clear list")) c.requests.clearRecent = true;
+    if (hovered) {
+        tooltipBelowMenu(hovered->path, hovered->exists ? "" : "This file is not there any more.");
+    }
     ImGui::EndMenu();
 }
 

@@ -24,6 +24,18 @@ const char* ellipsis() {
 
 bool startsCharacter(char c) { return (static_cast<unsigned char>(c) & 0xc0) != 0x80; }
 
+constexpr float kTooltipEm = 26;
+void showTooltip(std::string_view title, std::string_view body) {
+    ImGui::BeginTooltip();
+    ImGui::PushTextWrapPos(ImGui::GetFontSize() * kTooltipEm);
+    ImGui::PushFont(titleFont());
+    put(title, palette::kText);
+    ImGui::PopFont();
+    if (!body.empty()) put(body, palette::kDim);
+    ImGui::PopTextWrapPos();
+    ImGui::EndTooltip();
+}
+
 // A small open arrow, pointing right or down.
 void chevron(Context& c, ImDrawList* draw, ImVec2 middle, bool down, ImU32 colour) {
     const float r = c.px(3.5f);
@@ -137,15 +149,17 @@ bool beginCombo(Context& c, const char* id, const std::string& shown, float widt
 }
 
 void tooltip(std::string_view title, std::string_view body) {
-    if (!ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) return;
-    ImGui::BeginTooltip();
-    ImGui::PushTextWrapPos(ImGui::GetFontSize() * 26);
-    ImGui::PushFont(titleFont());
-    put(title, palette::kText);
-    ImGui::PopFont();
-    if (!body.empty()) put(body, palette::kDim);
-    ImGui::PopTextWrapPos();
-    ImGui::EndTooltip();
+    if (ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) showTooltip(title, body);
+}
+
+void tooltipBelowMenu(std::string_view title, std::string_view body) {
+    const ImVec2 at = ImGui::GetWindowPos(), size = ImGui::GetWindowSize();
+    const ImVec2 display = ImGui::GetIO().DisplaySize;
+    const float room = display.x - ImGui::GetFontSize() * (kTooltipEm + 2);
+    const bool below = display.y - at.y - size.y > at.y;
+    ImGui::SetNextWindowPos({std::max(std::min(at.x, room), 0.0f), below ? at.y + size.y : at.y}, 0,
+                            {0, below ? 0.0f : 1.0f});
+    showTooltip(title, body);
 }
 
 bool beginValues(const char* id, int columns, float labelShare) {

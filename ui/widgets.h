@@ -26,6 +26,8 @@ void sectionTitle(Context& c, const char* title, bool line = true);
 bool groupHeader(Context& c, const std::string& title);
 // Explains the last item: a title and sentences below it.
 void tooltip(std::string_view title, std::string_view body = {});
+// Says that of an entry of the menu that is being drawn, beside its other entries.
+void tooltipBelowMenu(std::string_view title, std::string_view body = {});
 
 // ---------------------------------------------------------------- values in columns
 // A label and `columns` right-aligned values a row.

@@ -580,6 +580,36 @@ TEST(Panels, HelpIsSearchedAndActs) {
     EXPECT_FALSE(s.model.help);
 }
 
+// Else it hides what else there is to choose.
+TEST(Panels, APathOfRecentFilesIsSaidBesideTheList) {
+    Screen s(1280, 800, 2);
+    s.model.recent[0].path = "/" + std::string(80, 'a') + "/" + std::string(80, 'b') + ".glb";
+    s.frame(2);
+    s.click("menu:File");
+    s.point("menu:Open Recent");
+    s.frame(30);
+    for (const char* item : {"recent:0", "recent:1"}) {
+        s.point(item);
+        s.frame(4);
+        const ImGuiWindow* tooltip = ImGui::FindWindowByName("##Tooltip_00");
+        ASSERT_TRUE(tooltip && tooltip->Active) << item;
+        const ImRect said = tooltip->Rect();
+        EXPECT_TRUE(ImRect({0, 0}, {1280, 800}).Contains(said)) << item;
+        for (const char* other : {"recent:0", "recent:1"}) {
+            const auto rect = s.panels.findItem(other);
+            ASSERT_TRUE(rect);
+            EXPECT_FALSE(
+                said.Overlaps({rect->x, rect->y, rect->x + rect->width, rect->y + rect->height}))
+                << item << " over " << other;
+        }
+    }
+    s.model.recent[0].path = "/a.glb";
+    s.point("recent:0");
+    s.frame(4);
+    const ImGuiWindow* tooltip = ImGui::FindWindowByName("##Tooltip_00");
+    EXPECT_FALSE(tooltip && tooltip->Active) << "all of it is there";
+}
+
 TEST(Panels, RecentFilesAreOpenedUnlessMissing) {
     Screen s(1280, 720, 1);
     s.frame(2);
