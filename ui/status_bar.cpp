@@ -40,7 +40,7 @@ std::vector<Part> leftParts(const Context& c) {
         parts.push_back({withThousands(std::uint64_t{count}) + (count == 1 ? one : several),
                          importance, colour, nullptr, "A click shows them.", "about-scene"});
     };
-    list(m.warnings.size(), " warning", " warnings", 5, palette::kNotice);
+    list(m.warnings.size(), " warning", " warnings", 8, palette::kNotice);
     list(m.ignored.size(), " feature not used", " features not used", 4, palette::kNotice);
     list(m.notes.size(), " note", " notes", 3, palette::kDim);
     if (c.statistics.badPixels > 0) {
@@ -78,7 +78,7 @@ std::vector<Part> rightParts(Context& c) {
         const Settings& d = *m.draft;
         const int scale = d.gather.cull.scale;
         parts.push_back(
-            {"draft", 8, palette::kNotice, nullptr,
+            {"draft", 7, palette::kNotice, nullptr,
              "While something moves: " + std::to_string(d.resolution.width) + " x " +
                  std::to_string(d.resolution.height) + " pixels, maps of " +
                  std::to_string(d.side[0].maps.resolution) + " texels, " +
@@ -91,7 +91,7 @@ std::vector<Part> rightParts(Context& c) {
                          "A wider window shows them, or a smaller interface: a click makes it so.",
                          "no-room", Action::smallerInterface});
     }
-    if (m.renderingPaused) parts.push_back({"rendering paused", 8, palette::kNotice});
+    if (m.renderingPaused) parts.push_back({"rendering paused", 7, palette::kNotice});
     const int accumulated = c.statistics.accumulatedFrames;
     const int wanted = c.model.setsWanted;
     if (wanted > 1 || accumulated > 1) {

@@ -566,6 +566,20 @@ TEST(Panels, ToastsFadeAndGo) {
     EXPECT_FALSE(s.requests.redraw);
 }
 
+TEST(Panels, WarningsAreCountedInASmallWindow) {
+    for (const int width : {420, 480, 560, 640, 800}) {
+        Screen s(width, 360, 1);
+        s.model.warnings = {"one", "two"};
+        s.model.ignored.clear();
+        s.model.notes.clear();
+        s.model.software = true;
+        s.model.draft = s.settings;
+        s.model.atRest = false;
+        s.frame(2);
+        EXPECT_TRUE(s.has("about-scene")) << width;
+    }
+}
+
 TEST(Panels, HelpIsSearchedAndActs) {
     Screen s(1280, 720, 1);
     s.model.help = true;
