@@ -75,7 +75,11 @@ ScriptRunner::Position ScriptRunner::find(const script::Place& place) const {
         case script::Place::Kind::widget:
             break;
     }
-    const auto item = session_.interface().findItem(place.widget);
+    const auto& interface = session_.interface();
+    auto item = interface.findItem(place.widget);
+    for (const auto& other : interface.itemRects()) {
+        if (!item && other.name.ends_with(":" + place.widget)) item = other;
+    }
     if (!item) {
         throw Error(ExitCode::usage, where() + ", '" + script_[next_].text + "': there is no '" +
                                          place.widget + "' in sight");

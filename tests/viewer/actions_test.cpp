@@ -423,6 +423,7 @@ TEST_F(ActionsTest, WidgetsAreReachedByNameResetIncluded) {
     EXPECT_TRUE(viewer.settings().compare);
     viewer.run("vpls=32; wait 1; click @vpls right; wait 2; click @reset:vpls; wait 2");
     EXPECT_EQ(viewer.settings().views.vpls, Settings{}.views.vpls);
+    viewer.run("click @File; wait 2; hover @\"Open Recent\"; hover @Scenes; key Escape; wait 2");
     EXPECT_THROW(viewer.run("click @no-such-widget"), Error);
 }
 
