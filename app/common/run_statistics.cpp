@@ -90,13 +90,13 @@ void RunStatistics::add(const FrameStatistics& frame) {
     last_ = frame;
 }
 
-Json RunStatistics::toJson(const SceneAssets& assets, const Settings& settings, int warmupFrames,
-                           bool partial) const {
+Json RunStatistics::toJson(const SceneAssets& assets, const Settings& settings,
+                           const Run& run) const {
     Json out = {{"schema", kStatisticsSchema}, {"program", programJson()},
                 {"gl", graphicsJson()},        {"host", hostJson()},
                 {"scene", sceneJson(assets)},  {"settings", mv::toJson(settings)}};
-    out["frames"] = {{"warmup", warmupFrames}, {"measured", frames_}, {"partial", partial}};
-    out["deterministic"] = true;  // headless frames depend on settings alone
+    out["frames"] = {{"warmup", run.warmupFrames}, {"measured", frames_}, {"partial", run.partial}};
+    out["deterministic"] = run.deterministic;
     out["clock"] = last_.clock;
 
     Json frame = mv::toJson(last_);

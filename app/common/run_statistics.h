@@ -29,8 +29,13 @@ class RunStatistics {
     const std::vector<double>& frameMs() const { return frameMs_; }
 
     // Counters are those of the last frame, bad pixels the sum over all.
+    struct Run {
+        int warmupFrames = 0;
+        bool partial = false;       // not all frames are there, or the last is not whole
+        bool deterministic = true;  // frames depend on settings alone: time went by steps
+    };
     nlohmann::ordered_json toJson(const SceneAssets& assets, const Settings& settings,
-                                  int warmupFrames, bool partial) const;
+                                  const Run& run) const;
 
   private:
     std::size_t frames_ = 0;

@@ -387,7 +387,8 @@ void HeadlessRun::writeStatistics(bool partial) const {
     const SceneAssets& assets = finished_.assets ? *finished_.assets : *session_.assets();
     const Settings& settings =
         finished_.assets ? finished_.settings : session_.picture().effective();
-    auto json = finished_.statistics.toJson(assets, settings, options_.warmup, partial);
+    auto json = finished_.statistics.toJson(assets, settings,
+                                            {.warmupFrames = options_.warmup, .partial = partial});
     if (measured_) json["metrics"] = toJson(*measured_);
     for (std::size_t i = 0; i < gatherShares_.size(); ++i) {
         if (gatherShares_[i]) json["methods"][i]["gather"] = toJson(*gatherShares_[i]);
@@ -400,7 +401,9 @@ void HeadlessRun::writeStatistics(bool partial) const {
 }
 
 void HeadlessRun::keepStatistics() {
+    const auto lock = kept_.lock();
     if (statisticsWritten_ || finished_.statistics.frames() == 0) return;
+    statisticsWritten_ = true;
     try {
         writeStatistics(true);
     } catch (const Error& error) {  // of two the first counts

@@ -484,7 +484,10 @@ nlohmann::ordered_json Session::numbers() const {
     RunStatistics frame = frameRun_.statistics();
     const int warmUps = frame.frames() > 0 ? FrameRun::kWarmUps : 0;
     if (frame.frames() == 0) frame.add(statistics());
-    auto json = frame.toJson(*assets(), picture_.effective(), warmUps, !picture_.still());
+    auto json = frame.toJson(*assets(), picture_.effective(),
+                             {.warmupFrames = warmUps,
+                              .partial = !picture_.still(),
+                              .deterministic = options_.headless || options_.deterministic});
     json["draft"] = picture_.isDraft();
     // Pairs are counted by level while that is looked at.
     for (std::size_t i = 0; i < json["methods"].size(); ++i) {

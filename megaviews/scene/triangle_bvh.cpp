@@ -317,10 +317,11 @@ float edgeOfMost(const Scene& scene) {
 
 float liftOf(std::uint32_t doubled) { return std::ldexp(kLeastLift, static_cast<int>(doubled)); }
 
-// How often bvhLift() doubles kLeastLift: to kVplOffset where most of a scene takes more than an
-// eighth of its cube, and to that many times less where it takes less; then to the grid's step.
+// How often bvhLift() doubles kLeastLift: to kVplOffset where most of a scene takes more than a
+// 64th of its cube, and to that many times less where it takes less; then to the grid's step. A
+// room with one finely meshed thing in it is no such scene: close sheets need the whole lift.
 std::uint32_t doublingsOfLift(const Scene& scene) {
-    const float most = std::min(8 * edgeOfMost(scene), 1.0f) * kVplOffset;
+    const float most = std::min(64 * edgeOfMost(scene), 1.0f) * kVplOffset;
     std::uint32_t doubled = 0;
     while (liftOf(doubled) < most) ++doubled;
     while (doubled < kMostBvhLift && liftOf(doubled) < scene.positionStep) ++doubled;

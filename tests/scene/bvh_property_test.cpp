@@ -526,7 +526,7 @@ TEST(TriangleBvh, FollowsWhatMoves) {
 // Rays that begin above a cup are of no use to the table under it.
 TEST(TriangleBvh, RaysBeginNearWhatIsSmallOnALargeGround) {
     Random random(7);
-    for (const float size : {1.0f, 0.3f, 0.1f, 0.01f, 1e-4f}) {
+    for (const float size : {1.0f, 0.3f, 0.1f, 4e-3f, 1e-4f}) {
         std::vector<glm::vec3> corners = randomSoup(random, 50, 0.2f);
         for (glm::vec3& p : corners) p = glm::vec3(0.5f) + size * (p - glm::vec3(0.5f));
         for (const glm::vec3& p :
@@ -535,10 +535,10 @@ TEST(TriangleBvh, RaysBeginNearWhatIsSmallOnALargeGround) {
         }
         Scene scene = soupScene(corners);
         const auto lift = [&] { return bvhLift(TriangleBvh::build(scene).data()); };
-        if (size > 0.2f) {
+        if (size > 0.02f) {
             EXPECT_EQ(lift(), kVplOffset) << size;
         } else {
-            EXPECT_LT(lift(), std::max(kVplOffset * 16 * size, 2e-6f)) << size;
+            EXPECT_LT(lift(), std::max(kVplOffset * 128 * size, 2e-6f)) << size;
         }
         EXPECT_GT(lift(), 1e-6f);
         for (const float step : {3e-5f, 3e-4f}) {
