@@ -1,6 +1,7 @@
 #include "screen.h"
 
 #include <gtest/gtest.h>
+#include <imgui_internal.h>
 
 #include <cmath>
 
@@ -93,6 +94,11 @@ void Screen::drag(const std::string& item, float dx, float dy) {
     frame(2);
     ImGui::GetIO().MouseDown[0] = false;
     frame(2);
+}
+
+const ImGuiWindow* Screen::tooltip() const {
+    const ImGuiWindow* window = ImGui::FindWindowByName("##Tooltip_00");
+    return window && window->Active && !window->Hidden && window->Size.x > 50 ? window : nullptr;
 }
 
 void Screen::press(ImGuiKey key) {

@@ -9,6 +9,8 @@
 
 #include "ui/interface.h"
 
+struct ImGuiWindow;
+
 namespace mv::ui {
 
 // A scene, two methods, views, a pixel and steps, as an application would report them.
@@ -29,6 +31,7 @@ class Screen {
     void show(const std::string& item);  // scrolls the controls to it with the wheel
     void point(const std::string& item);
     void pointAt(float x, float y);
+    const ImGuiWindow* tooltip() const;  // that is shown; null: none
     void click(const std::string& item, int button = 0);
     void doubleClick(const std::string& item);
     void drag(const std::string& item, float dx, float dy);
