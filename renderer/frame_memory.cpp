@@ -1,7 +1,9 @@
+#include <algorithm>
 #include <string>
 #include <utility>
 
 #include "renderer/frame_state.h"
+#include "renderer/gl/memory.h"
 #include "renderer/passes/scene_geometry.h"
 
 namespace mv {
@@ -67,6 +69,10 @@ std::vector<MemoryUse> FrameRenderer::Impl::memory() const {
     add("reflections", reflectedBytes);
     add("picture", pictureBytes);
     add("overlay", overlay.pass ? overlay.pass->bytes() + overlay.picture.bytes() : 0);
+    // Counters, tables of a few KiB, read-backs, pictures of the window.
+    std::uint64_t named = 0;
+    for (const MemoryUse& use : out) named += use.usedBytes;
+    add("other", std::max(gl::heldMemory(), named) - named);
     return out;
 }
 

@@ -4,7 +4,7 @@
 
 #include "megaviews/settings/statistics_table.h"
 #include "renderer/frame_state.h"
-#include "renderer/gl/free_memory.h"
+#include "renderer/gl/memory.h"
 
 namespace mv {
 namespace {

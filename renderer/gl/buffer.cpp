@@ -6,6 +6,7 @@
 
 #include "megaviews/core/error.h"
 #include "renderer/gl/context.h"
+#include "renderer/gl/memory.h"
 #include "renderer/gl/read_back.h"
 #include "renderer/gl/workarounds.h"
 
@@ -36,11 +37,14 @@ Buffer::Buffer(std::string label, std::uint64_t bytes) : bytes_(bytes) {
                                               std::to_string((bytes + (1u << 20) - 1) >> 20) +
                                               " MiB");
     }
+    countMemory(static_cast<std::int64_t>(bytes_));
     glObjectLabel(GL_BUFFER, id_, static_cast<GLsizei>(label.size()), label.data());
 }
 
 Buffer::~Buffer() {
-    if (id_) glDeleteBuffers(1, &id_);
+    if (!id_) return;
+    glDeleteBuffers(1, &id_);
+    countMemory(-static_cast<std::int64_t>(bytes_));
 }
 
 Buffer::Buffer(Buffer&& other) noexcept

@@ -6,6 +6,7 @@
 
 #include "megaviews/core/error.h"
 #include "renderer/gl/context.h"
+#include "renderer/gl/memory.h"
 
 namespace mv::gl {
 namespace {
@@ -71,7 +72,9 @@ void ReadBack::forget() {
 
 void ReadBack::release() {
     forget();
-    if (id_) glDeleteBuffers(1, &id_);  // unmaps it
+    if (!id_) return;
+    glDeleteBuffers(1, &id_);  // unmaps it
+    countMemory(-static_cast<std::int64_t>(kSlots * slotBytes_));
     id_ = 0;
 }
 
@@ -84,6 +87,7 @@ void ReadBack::request(const Buffer& from, std::uint64_t offset, std::uint64_t b
         const GLbitfield access = GL_MAP_READ_BIT | GL_MAP_PERSISTENT_BIT | GL_MAP_COHERENT_BIT;
         const ErrorsHandledHere handled;
         glCreateBuffers(1, &id_);
+        countMemory(size);
         glNamedBufferStorage(id_, size, nullptr, access);
         glObjectLabel(GL_BUFFER, id_, static_cast<GLsizei>(label_.size()), label_.data());
         mapped_ = static_cast<std::byte*>(glMapNamedBufferRange(id_, 0, size, access));

@@ -8,6 +8,7 @@
 
 #include "megaviews/core/error.h"
 #include "renderer/gl/context.h"
+#include "renderer/gl/memory.h"
 #include "renderer/gl/read_back.h"
 
 namespace mv::gl {
@@ -114,6 +115,7 @@ Texture::Texture(std::string label, GLenum target, GLenum internalFormat, int wi
                                               std::to_string((bytes_ + (1u << 20) - 1) >> 20) +
                                               " MiB");
     }
+    countMemory(static_cast<std::int64_t>(bytes_));
     glObjectLabel(GL_TEXTURE, id_, static_cast<GLsizei>(label.size()), label.data());
     // One state for all: shaders fetch texels, but for those that bring samplers of their own.
     parameter(GL_TEXTURE_MIN_FILTER, GL_NEAREST_MIPMAP_NEAREST);
@@ -124,7 +126,9 @@ Texture::Texture(std::string label, GLenum target, GLenum internalFormat, int wi
 }
 
 Texture::~Texture() {
-    if (id_) glDeleteTextures(1, &id_);
+    if (!id_) return;
+    glDeleteTextures(1, &id_);
+    countMemory(-static_cast<std::int64_t>(bytes_));
 }
 
 Texture::Texture(Texture&& other) noexcept { *this = std::move(other); }

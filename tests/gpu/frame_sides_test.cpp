@@ -4,6 +4,7 @@
 
 #include "gpu/frame_fixture.h"
 #include "megaviews/settings/settings_table.h"
+#include "renderer/gl/memory.h"
 
 namespace mv {
 namespace {
@@ -199,6 +200,26 @@ TEST_F(FrameTest, TellsWhatIsOnTheGpu) {
     // What is closed is freed.
     settings.compare = false;
     EXPECT_EQ(find(render(), "lists, right").usedBytes, 0u);
+}
+
+// What no row names are counters and tables of a few KiB; what two rows name is counted once.
+TEST_F(FrameTest, NamesWhatIsOnTheGpu) {
+    for (const Method method : {Method::manylods, Method::none, Method::rays, Method::shadowRays,
+                                Method::raster, Method::ism, Method::vir}) {
+        SCOPED_TRACE(static_cast<int>(method));
+        compareWith(settings, method);
+        for (const bool moving : {true, false}) {
+            settings.gather.history = moving ? 8 : 0;
+            settings.picture.temporal = moving;
+            settings.picture.accumulate = moving ? 1 : 2;
+            std::uint64_t named = 0, other = 0;
+            for (const MemoryUse& use : render().memory) {
+                (use.name == "other" ? other : named) += use.usedBytes;
+            }
+            EXPECT_EQ(named + other, gl::heldMemory());
+            EXPECT_LT(other, 1u << 19);
+        }
+    }
 }
 
 TEST_F(FrameTest, CountsByLevelWhereAsked) {

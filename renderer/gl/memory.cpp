@@ -1,8 +1,17 @@
-#include "renderer/gl/free_memory.h"
+#include "renderer/gl/memory.h"
 
 #include <epoxy/gl.h>
 
 namespace mv::gl {
+namespace {
+
+std::uint64_t held = 0;  // of the one thread that draws
+
+}  // namespace
+
+std::uint64_t heldMemory() { return held; }
+
+void countMemory(std::int64_t bytes) { held += static_cast<std::uint64_t>(bytes); }
 
 std::uint64_t freeVideoMemory() {
     GLint kibibytes[4] = {0, 0, 0,
