@@ -4,9 +4,11 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 #include "megaviews/core/error.h"
 #include "megaviews/views/running_shares.h"
@@ -22,49 +24,95 @@ double areaRoot(const BvhTriangle& t) {
     return 0.5 * glm::length(glm::cross(b - a, c - a));
 }
 
-// Sub-triangles along a side so that about every texel of the emitting texture is met.
-int samplesASide(const Scene& scene, const BvhData& bvh, const Material& material,
-                 std::uint32_t triangle) {
-    const bool unlitTexture = material.unlit && material.baseTexture >= 0 && !scene.uvs.empty();
-    const bool emissiveTexture = material.emissiveTexture >= 0 && !scene.emissiveUvs.empty();
-    const bool masked = material.rayCutoff() > 0;
-    if (!unlitTexture && !emissiveTexture) return masked || !scene.colors.empty() ? 4 : 1;
-    const auto texels = [&](int texture, const std::vector<glm::vec2>& uvs) {
-        const TraceTexture& image = bvh.textures[texture];
-        const glm::uvec3 corner = scene.triangles[triangle];
-        const glm::dvec2 size(image.width, image.height);
-        const glm::dvec2 a = glm::dvec2(uvs[corner.y] - uvs[corner.x]) * size;
-        const glm::dvec2 b = glm::dvec2(uvs[corner.z] - uvs[corner.x]) * size;
-        return 0.5 * std::abs(a.x * b.y - a.y * b.x);
-    };
-    double count = 0;
-    if (unlitTexture) count = texels(material.baseTexture, scene.uvs);
-    if (emissiveTexture) {
-        count = std::max(count, texels(material.emissiveTexture, scene.emissiveUvs));
-    }
-    return std::isfinite(count)
-               ? static_cast<int>(std::clamp(std::ceil(std::sqrt(count)), 2.0, 64.0))
-               : 2;
+// What a triangle's light and mask are looked up in, of its trace textures.
+struct Lookup {
+    const TraceTexture* image = nullptr;
+    std::array<glm::dvec2, 3> corners;  // in texels
+};
+
+std::optional<Lookup> lookup(const Scene& scene, const BvhData& bvh, int texture,
+                             const std::vector<glm::vec2>& uvs, std::uint32_t triangle) {
+    if (texture < 0 || uvs.empty()) return std::nullopt;
+    Lookup out{&bvh.textures[texture], {}};
+    const glm::uvec3 corner = scene.triangles[triangle];
+    const glm::dvec2 size(out.image->width, out.image->height);
+    for (int i = 0; i < 3; ++i) out.corners[std::size_t(i)] = glm::dvec2(uvs[corner[i]]) * size;
+    return out;
 }
 
-// Mean emission over a triangle: at the centroids of n * n congruent sub-triangles.
-glm::dvec3 meanEmission(const BvhData& bvh, std::uint32_t slot, int n) {
-    glm::dvec3 sum(0);
-    const BvhTriangle& t = bvh.triangles[slot];
-    const auto add = [&](double u, double v) {
-        const auto uf = static_cast<float>(u / n), vf = static_cast<float>(v / n);
-        if ((t.material & kMaterialMask) &&
-            bvhMaskedOut(bvh, t.triangle, t.material & ~kMaterialMask, uf, vf)) {
-            return;
+double texelsOf(const std::optional<Lookup>& of) {
+    if (!of) return 0;
+    const glm::dvec2 a = of->corners[1] - of->corners[0], b = of->corners[2] - of->corners[0];
+    const double area = 0.5 * std::abs(a.x * b.y - a.y * b.x);
+    return std::isfinite(area) ? area : 1;
+}
+
+// Of the texels around a triangle's corners and between them one is not black.
+bool hasLight(const BvhData& bvh, const Lookup& of) {
+    const auto& [a, b, c] = of.corners;
+    const glm::dvec2 low = glm::floor(glm::min(a, glm::min(b, c))) - 1.0;
+    const glm::dvec2 high = glm::ceil(glm::max(a, glm::max(b, c))) + 1.0;
+    const int width = static_cast<int>(of.image->width),
+              height = static_cast<int>(of.image->height);
+    // Twice the image is all of it, however it is wrapped; so is what is too far away to count.
+    const auto range = [](double from, double to, int size) {
+        const bool whole = !(std::abs(from) < 1e9 && to - from < 2.0 * size);
+        return whole ? std::array{0, 2 * size}
+                     : std::array{static_cast<int>(from), static_cast<int>(to)};
+    };
+    const auto [x0, x1] = range(low.x, high.x, width);
+    const auto [y0, y1] = range(low.y, high.y, height);
+    for (int y = y0; y < y1; ++y) {
+        const int row = bvhWrap(y, height, (of.image->wrap >> 2) & 3u) * width;
+        for (int x = x0; x < x1; ++x) {
+            const auto at =
+                static_cast<std::uint32_t>(row + bvhWrap(x, width, of.image->wrap & 3u));
+            if (bvhColourTexel(bvh, of.image->offset + at) & 0xFFFFFFu) return true;
         }
-        const BvhSurface s = bvhSurface(bvh, slot, uf, vf);
+    }
+    return false;
+}
+
+// Mean emission over a triangle: at a point in each of n * n congruent sub-triangles, of about a
+// texel where that is not too many. Where none of them shines though some of it may, half a sample:
+// it counts for little, but paths start there.
+glm::dvec3 meanEmission(const Scene& scene, const BvhData& bvh, const Material& material,
+                        std::uint32_t slot) {
+    const BvhTriangle& t = bvh.triangles[slot];
+    const std::optional<Lookup> base =
+        lookup(scene, bvh, material.baseTexture, scene.uvs, t.triangle);
+    const std::optional<Lookup> light =
+        material.unlit
+            ? base
+            : lookup(scene, bvh, material.emissiveTexture, scene.emissiveUvs, t.triangle);
+    if (light && !hasLight(bvh, *light)) return glm::dvec3(0);
+    const bool masked = (t.material & kMaterialMask) != 0;
+    const bool varies = masked || light || (material.unlit && !scene.colors.empty());
+    const double texels = std::max(texelsOf(light), masked ? texelsOf(base) : 0);
+    const int n =
+        varies ? static_cast<int>(std::clamp(std::ceil(std::sqrt(texels)), 4.0, 64.0)) : 1;
+
+    glm::dvec3 sum(0);
+    std::uint32_t sample = 0;
+    const auto add = [&](int i, int j, bool upper) {
+        // At random, since textures repeat as regularly as any lattice.
+        const vec4 r = random4(0, t.triangle, 0, sample++);
+        const bool folded = r.x + r.y > 1;
+        double a = folded ? 1 - r.x : r.x, b = folded ? 1 - r.y : r.y;
+        if (upper) a = 1 - a, b = 1 - b;
+        const auto u = static_cast<float>((i + a) / n), v = static_cast<float>((j + b) / n);
+        if (masked && bvhMaskedOut(bvh, t.triangle, t.material & ~kMaterialMask, u, v)) return;
+        const BvhSurface s = bvhSurface(bvh, slot, u, v);
         sum += glm::dvec3(s.emissionR, s.emissionG, s.emissionB);
     };
     for (int i = 0; i < n; ++i) {
         for (int j = 0; i + j < n; ++j) {
-            add(i + 1.0 / 3, j + 1.0 / 3);
-            if (i + j + 1 < n) add(i + 2.0 / 3, j + 2.0 / 3);
+            add(i, j, false);
+            if (i + j + 1 < n) add(i, j, true);
         }
+    }
+    if (sum == glm::dvec3(0)) {
+        sum = 0.5 * glm::dvec3(material.unlit ? glm::vec3(material.baseColor) : material.emission);
     }
     return sum / (double(n) * n);
 }
@@ -150,9 +198,8 @@ std::shared_ptr<const EmissiveSurfaces> makeEmissiveSurfaces(const Scene& scene,
         for (std::size_t i = range.begin(); i < range.end(); ++i) {
             const BvhTriangle& t = bvh.triangles[slots[i]];
             const Material& material = scene.materials[t.material & ~kMaterialMask];
-            const int n = samplesASide(scene, data, material, t.triangle);
             const double sides = material.doubleSided ? 2 : 1;
-            fluxes[i] = meanEmission(data, slots[i], n) *
+            fluxes[i] = meanEmission(scene, data, material, slots[i]) *
                         (std::numbers::pi * areaRoot(t) * worldAreaOfRoot * sides);
         }
     });

@@ -79,6 +79,53 @@ TEST(Emitters, ATexturedSurfaceSendsTheMeanOfItsTexture) {
     EXPECT_EQ(lit.emitters.emissiveCount(), 2u);
 }
 
+// A tube in an eighth of a mask; a spot in a texture that repeats; a dial in a dark wall: whatever
+// shines has a share, however little of a triangle it is. What cannot shine has none.
+TEST(Emitters, WhatShinesInPlacesHasItsShare) {
+    const auto texture = [](int size, auto&& isLit, bool inAlpha) {
+        std::vector<std::uint8_t> rgba;
+        for (int i = 0; i < size * size; ++i) {
+            const auto c = static_cast<std::uint8_t>(isLit(i % size, i / size) ? 255 : 0);
+            const auto colour = inAlpha ? std::uint8_t{255} : c;
+            rgba.insert(rgba.end(), {colour, colour, colour, inAlpha ? c : std::uint8_t{255}});
+        }
+        return rgba;
+    };
+    const auto flux = [&](int repeats, int size, auto&& isLit, bool inAlpha) {
+        RoomBuilder room = whiteRoom();
+        Material lamp;
+        lamp.emission = {1, 1, 1};
+        const int image = room.texture(size, size, texture(size, isLit, inAlpha));
+        (inAlpha ? lamp.baseTexture : lamp.emissiveTexture) = image;
+        lamp.alphaCutoff = inAlpha ? 0.5f : 0;
+        room.quad({1, 1, 1}, {1, 0, 0}, {0, 0, 1}, room.material(lamp));
+        Scene scene = room.finish();
+        for (std::size_t i = scene.uvs.size() - 4; i < scene.uvs.size(); ++i) {
+            scene.uvs[i] *= repeats;
+        }
+        scene.emissiveUvs = scene.uvs;
+        const Lit lit(std::move(scene));
+        return std::pair(lit.emitters.fluxW().x / std::numbers::pi, lit.emitters.emissiveCount());
+    };
+    const auto tube = [](int, int y) { return y >= 28 && y < 36; };
+    const auto spot = [](int x, int y) { return x >= 3 && x < 5 && y >= 3 && y < 5; };
+    const auto expectShare = [](const auto& found, double share) {
+        EXPECT_NEAR(found.first, share, 0.15 * share);
+        EXPECT_EQ(found.second, 2u);
+    };
+    expectShare(flux(1, 64, tube, true), 0.125);
+    expectShare(flux(64, 8, spot, false), 1.0 / 16);
+    const auto dial = flux(
+        1, 256, [](int x, int y) { return x == 200 && y == 30; }, false);
+    EXPECT_GT(dial.first, 0);
+    EXPECT_LT(dial.first, 0.001);
+    EXPECT_GE(dial.second, 1u);
+    EXPECT_EQ(flux(
+                  1, 256, [](int, int) { return false; }, false)
+                  .second,
+              0u);
+}
+
 TEST(Emitters, SharesAreExactMultiplesThatEndAtOne) {
     RoomBuilder room = whiteRoom();
     room.light(LightType::point, {1, 1, 1}, {0, -1, 0}, {1e-12f, 0, 0});  // hardly anything
