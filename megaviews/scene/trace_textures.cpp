@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <numbers>
 #include <set>
 
 #include "megaviews/scene/closed_surfaces.h"
@@ -65,10 +67,11 @@ TraceTextures makeTraceTextures(const Scene& scene) {
         bool usable = false;
     };
     std::vector<Place> places(scene.images.size());
-    // Rays ask for colours and masks, not for the numbers of metal, roughness and normal maps.
+    // Rays ask for colours and masks, not for the numbers of metal, roughness, coats and normals.
     std::set<const Image*> spared, masked;
     for (const Material& m : scene.materials) {
-        for (const int t : {m.metallicRoughnessTexture, m.normalTexture, m.coatNormalTexture})
+        for (const int t :
+             {m.metallicRoughnessTexture, m.normalTexture, m.coatTexture, m.coatNormalTexture})
             spared.insert(scene.imageOf(t));
         if (m.rayCutoff() > 0) masked.insert(scene.imageOf(m.baseTexture));
     }
@@ -129,10 +132,17 @@ float meanOf(const Scene& scene, int texture, std::size_t channel) {
     const Image* image = scene.imageOf(texture);
     if (!image) return 1;
     const std::vector<std::uint8_t>& rgba = image->rgba;
-    const std::size_t step = std::max<std::size_t>(rgba.size() / 4 / 4096, 1) * 4;
-    double sum = 0, count = 0;
-    for (std::size_t i = channel; i < rgba.size(); i += step, ++count) sum += rgba[i];
-    return count > 0 ? static_cast<float>(sum / count / 255) : 1;
+    // At most that many texels, strewn by the golden ratio: a regular step meets few columns.
+    constexpr std::size_t kMost = 4096;
+    const std::size_t texels = rgba.size() / 4, count = std::min(texels, kMost);
+    double sum = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+        const double share = std::fmod(static_cast<double>(i) * std::numbers::phi, 1.0);
+        const std::size_t texel =
+            texels <= kMost ? i : static_cast<std::size_t>(share * static_cast<double>(texels));
+        sum += rgba[4 * texel + channel];
+    }
+    return count > 0 ? static_cast<float>(sum / static_cast<double>(count) / 255) : 1;
 }
 
 // Share of light from everywhere that gloss of that much at normal incidence reflects to
