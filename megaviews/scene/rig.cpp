@@ -90,8 +90,9 @@ std::vector<Draw> drawsAt(const Rig& rig, std::span<const Primitive> primitives,
     return posed;
 }
 
-std::vector<bool> movingDraws(const Rig& rig, std::span<const Skin> skins,
-                              std::span<const RiggedDraw> draws, int animation) {
+std::vector<bool> movingDraws(const Rig& rig, std::span<const Primitive> primitives,
+                              std::span<const Skin> skins, std::span<const RiggedDraw> draws,
+                              int animation) {
     std::vector<bool> moving(draws.size(), false);
     const Animation* chosen = animationOf(rig, animation);
     if (!chosen) return moving;
@@ -108,11 +109,12 @@ std::vector<bool> movingDraws(const Rig& rig, std::span<const Skin> skins,
         const bool morphs = !draw.weights.empty() &&
                             std::ranges::any_of(weightChannelsOf(rig, animation, draw.node),
                                                 changes<WeightChannel>);
+        const bool skinned = draw.skin >= 0 && !primitives[draw.primitive].influences.empty();
         const bool carried =
-            draw.skin < 0 ? moved[draw.node]
-                          : std::ranges::any_of(
-                                skins[static_cast<std::size_t>(draw.skin)].joints,
-                                [&](int joint) { return moved[static_cast<std::size_t>(joint)]; });
+            !skinned ? moved[draw.node]
+                     : std::ranges::any_of(
+                           skins[static_cast<std::size_t>(draw.skin)].joints,
+                           [&](int joint) { return moved[static_cast<std::size_t>(joint)]; });
         moving[i] = morphs || carried;
     }
     return moving;

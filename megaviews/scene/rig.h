@@ -91,7 +91,8 @@ std::vector<Draw> drawsAt(const Rig& rig, std::span<const Primitive> primitives,
                           PoseTime time);
 
 // Which draws stand otherwise at another time of an animation (-1: none).
-std::vector<bool> movingDraws(const Rig& rig, std::span<const Skin> skins,
-                              std::span<const RiggedDraw> draws, int animation);
+std::vector<bool> movingDraws(const Rig& rig, std::span<const Primitive> primitives,
+                              std::span<const Skin> skins, std::span<const RiggedDraw> draws,
+                              int animation);
 
 }  // namespace mv

@@ -161,7 +161,7 @@ LeftOut assembleGeometry(RiggedScene rigged, PoseTime time, double durationS,
                          const Progress& progress) {
     // What moves comes last.
     const std::vector<bool> moves =
-        movingDraws(rigged.rig, rigged.skins, rigged.draws, time.animation);
+        movingDraws(rigged.rig, rigged.primitives, rigged.skins, rigged.draws, time.animation);
     const auto moving = static_cast<std::size_t>(std::count(moves.begin(), moves.end(), true));
     const std::size_t standing = moves.size() - moving;
     if (moving > 0) {
@@ -210,7 +210,7 @@ LeftOut assembleGeometry(RiggedScene rigged, PoseTime time, double durationS,
     kept->animation = time.animation;
     kept->durationS = durationS;
     kept->referenceS = way.referenceS;
-    for (std::size_t i = standing; i < draws.size(); ++i) kept->firstVertex.push_back(first[i].x);
+    kept->first.assign(first.begin() + static_cast<std::ptrdiff_t>(standing), first.end() - 1);
     kept->vertex = first[standing].x;
     kept->triangle = first[standing].y;
     kept->min = glm::clamp(scene.root.rootFromWorld(way.box.min), 0.0f, 1.0f);
@@ -230,9 +230,13 @@ bool poseScene(Scene& scene, double timeS) {
     const std::vector<Draw> draws = drawsAt(moving.rigged, {moving.animation, time});
     tbb::parallel_for(std::size_t{0}, draws.size(), [&](std::size_t i) {
         const ScenePiece piece = makePiece(draws[i], scene.root, true);
-        const auto at = static_cast<std::ptrdiff_t>(moving.firstVertex[i]);
+        const glm::uvec2 first = moving.first[i];
+        const auto at = static_cast<std::ptrdiff_t>(first.x);
         std::copy(piece.positions.begin(), piece.positions.end(), scene.positions.begin() + at);
         std::copy(piece.normals.begin(), piece.normals.end(), scene.normals.begin() + at);
+        for (std::size_t t = 0; t < piece.triangles.size(); ++t) {
+            scene.triangles[first.y + t] = piece.triangles[t] + first.x;
+        }
     });
     scene.poseS = time;
     ++scene.poseNumber;

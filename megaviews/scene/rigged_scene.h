@@ -27,7 +27,7 @@ struct MovingGeometry {
     int animation = 0;
     double durationS = 0;
     double referenceS = 0;                   // when its surface is largest
-    std::vector<std::uint32_t> firstVertex;  // of each draw in the scene
+    std::vector<glm::uvec2> first;           // vertex and triangle of each draw in the scene
     std::uint32_t vertex = 0, triangle = 0;  // the first that move
     glm::vec3 min{0}, max{0};                // box over the whole animation, root-cube units
     std::string contentHash;                 // of the scene whatever the time
@@ -41,7 +41,7 @@ struct LeftOut {
 // Fills the geometry arrays and the root cube of `scene`, posed at `time`. Scene::contentHash is
 // that of the file. The cube holds what moves at all times of the animation, found at 16 to 128 of
 // them: what leaves it between is held at its faces. A triangle of what moves stays even where it
-// has no area, and keeps the winding of `time` where a transform turns inside out later.
+// has no area.
 // `stated` is the cube that the file names, if it does: it is taken where it fits the geometry, so
 // that what was computed in it comes back bit by bit.
 LeftOut assembleGeometry(RiggedScene rigged, PoseTime time, double durationS,
@@ -49,7 +49,8 @@ LeftOut assembleGeometry(RiggedScene rigged, PoseTime time, double durationS,
                          const Progress& progress);
 
 // Moves what moves to where it stands at a time of the animation, endlessly looped: positions,
-// normals, Scene::contentHash and poseNumber. False if it stands there already, or nothing moves.
+// normals, the winding of triangles, which a transform may turn inside out, Scene::contentHash and
+// poseNumber. False if it stands there already, or nothing moves.
 // A triangle hierarchy and an octree of the scene follow by their refit().
 bool poseScene(Scene& scene, double timeS);
 

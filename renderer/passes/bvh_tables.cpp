@@ -41,6 +41,7 @@ void BvhTables::setPose(const Scene& scene, const TriangleBvh& bvh) {
         tables_.nodes.write(moving.node, tail(bvh.nodes, moving.node));
     }
     tables_.triangles.write(moving.triangle, tail(bvh.triangles, moving.triangle));
+    tables_.indices.write(scene.moving->triangle, tail(scene.triangles, scene.moving->triangle));
     tables_.normals.write(scene.moving->vertex, tail(scene.normals, scene.moving->vertex));
 }
 

@@ -87,8 +87,7 @@ SceneGeometry::SceneGeometry(const Scene& scene) {
         ++chunks_.back().triangles;
         include(scene, t, chunks_.back());
     }
-    movingTriangles_.assign(triangles.begin() + static_cast<std::ptrdiff_t>(standing),
-                            triangles.end());
+    movingOrder_.assign(order.begin() + static_cast<std::ptrdiff_t>(standing), order.end());
 
     // Upload. Attributes that the scene lacks stay disabled and read their constant value.
     positions_ = gl::Buffer::of("scene positions", scene.positions);
@@ -130,13 +129,17 @@ void SceneGeometry::setPose(const Scene& scene) {
     positions_.write(first, moving);
     movingPositions_.assign(moving.begin(), moving.end());
     normals_.write(first, std::span(scene.normals).subspan(first));
+    std::vector<glm::uvec3> triangles;
+    triangles.reserve(movingOrder_.size());
+    for (const std::uint32_t t : movingOrder_) triangles.push_back(scene.triangles[t]);
+    indices_.write(scene.moving->triangle, std::span<const glm::uvec3>(triangles));
     std::size_t next = 0;
     for (std::size_t i = firstMovingChunk_; i < chunks_.size(); ++i) {
         GeometryChunk& chunk = chunks_[i];
         chunk.min = glm::vec3(kInfinity);
         chunk.max = glm::vec3(-kInfinity);
         for (std::uint32_t t = 0; t < chunk.triangles; ++t) {
-            include(scene, movingTriangles_[next++], chunk);
+            include(scene, triangles[next++], chunk);
         }
     }
 }

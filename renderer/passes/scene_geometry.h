@@ -69,8 +69,8 @@ class SceneGeometry {
     std::vector<GeometryChunk> chunks_;
     // Chunks of what moves come last.
     std::size_t firstMovingChunk_ = 0;
-    std::vector<glm::uvec3> movingTriangles_;  // in the order of the index buffer
-    std::vector<glm::vec3> movingPositions_;   // of the last pose
+    std::vector<std::uint32_t> movingOrder_;  // of the scene's triangles in the index buffer
+    std::vector<glm::vec3> movingPositions_;  // of the last pose
     float largestStep_ = 0;
 };
 

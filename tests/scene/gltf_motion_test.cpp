@@ -214,7 +214,7 @@ TEST(GltfAnimation, GeometryStandsInThePoseOfTheTime) {
 }
 
 // Without normals each triangle has vertices of its own; they stay in their order, so that textures
-// and motion vectors do, where an animation turns it inside out.
+// and motion vectors do, where an animation turns it inside out. Its winding follows.
 TEST(GltfAnimation, VerticesKeepTheirOrderWhereThingsTurnInsideOut) {
     GltfBuilder b;
     b.primitive({{"POSITION", b.positions({{1, 0, 0}, {2, 0, 0}, {1, 1, 0}})}});
@@ -229,6 +229,8 @@ TEST(GltfAnimation, VerticesKeepTheirOrderWhereThingsTurnInsideOut) {
         EXPECT_NEAR(world(i).x, -0.5 * before[i].x, 1e-5) << i;
         EXPECT_NEAR(world(i).y, before[i].y, 1e-5) << i;
     }
+    EXPECT_EQ(scene.triangles, (std::vector{glm::uvec3(0, 2, 1)}));
+    poseScene(scene, 0);
     EXPECT_EQ(scene.triangles, triangles);
 }
 
