@@ -280,29 +280,43 @@ void fillUnseen(Image& image, int alpha) {
     }
 }
 
+std::vector<int> halvingsOf(std::span<const glm::ivec2> sizes) {
+    std::vector<int> halvings(sizes.size(), 0);
+    const auto isTooMuch = [&] {
+        std::int64_t sum = 0;
+        for (std::size_t i = 0; i < sizes.size(); ++i) {
+            sum += std::int64_t{sizes[i].x >> halvings[i]} * (sizes[i].y >> halvings[i]);
+        }
+        return sum > kMostPixelsInAll;
+    };
+    for (int longest = kLargestImageSide / 2; isTooMuch(); longest /= 2) {
+        for (std::size_t i = 0; i < sizes.size(); ++i) {
+            while (std::max(sizes[i].x, sizes[i].y) >> halvings[i] > longest) ++halvings[i];
+        }
+    }
+    return halvings;
+}
+
 std::vector<Image> loadImages(GltfFile& file, const tinygltf::Model& model,
                               std::span<const UsedImage> used, GltfReport& report,
                               const Progress& progress) {
     std::vector<Source> sources;
-    std::int64_t pixelsInAll = 0;
+    std::vector<glm::ivec2> sizes(used.size(), glm::ivec2(0));
     const auto images = file.json.find("images");
     for (const UsedImage& image : used) {
         const auto i = static_cast<std::size_t>(image.index);
         sources.push_back(findSource(file, model, (*images)[i], i));
         Source& source = sources.back();
         if (!source.error.empty()) continue;
-        int width = 0, height = 0;
-        source.error = headerError(source.bytes, width, height);
-        if (source.error.empty()) pixelsInAll += std::int64_t{width} * height;
+        glm::ivec2& size = sizes[sources.size() - 1];
+        source.error = headerError(source.bytes, size.x, size.y);
+        if (!source.error.empty()) size = glm::ivec2(0);
     }
-    // Too much in all: every image is halved alike.
-    int halvings = 0;
-    while ((pixelsInAll >> (2 * halvings)) > kMostPixelsInAll) ++halvings;
-    if (halvings > 0) {
-        report.warn("images", std::to_string(pixelsInAll >> 20) +
-                                  " Mi pixels in all are too many; "
-                                  "both sides of every image are divided by " +
-                                  std::to_string(1 << halvings));
+    const std::vector<int> halvings = halvingsOf(sizes);
+    if (std::ranges::any_of(halvings, [](int h) { return h > 0; })) {
+        report.warn("images",
+                    "they are too many pixels in all; those with the longest sides are "
+                    "halved until they fit");
     }
 
     std::vector<Image> result(used.size());
@@ -310,7 +324,7 @@ std::vector<Image> loadImages(GltfFile& file, const tinygltf::Model& model,
     tbb::parallel_for(std::size_t{0}, sources.size(), [&](std::size_t i) {
         Source& source = sources[i];
         if (source.error.empty()) {
-            DecodedImage decoded = decodeImage(source.bytes, halvings, used[i].texels);
+            DecodedImage decoded = decodeImage(source.bytes, halvings[i], used[i].texels);
             source.error = std::move(decoded.error);
             result[i] = {source.name, decoded.width, decoded.height, std::move(decoded.rgba)};
         }

@@ -33,6 +33,10 @@ struct DecodedImage {
 DecodedImage decodeImage(std::span<const std::uint8_t> bytes, int halvings = 0,
                          Texels texels = Texels::colours);
 
+// How often the sides of images are halved so that all together are no more than kMostPixelsInAll:
+// the longest first, so that a palette of few texels stays what it is beside large images.
+std::vector<int> halvingsOf(std::span<const glm::ivec2> sizes);
+
 struct UsedImage {
     int index;  // in the file
     Texels texels;

@@ -402,6 +402,15 @@ TEST(GltfWebp, EveryCutOfAFileIsRefused) {
     EXPECT_FALSE(decodeImage(std::span(whole).first(whole.size() / 2)).error.empty());
 }
 
+TEST(GltfImages, TheLargestAreHalvedWhereAllAreTooMany) {
+    std::vector<glm::ivec2> sizes(16, glm::ivec2(4096));
+    EXPECT_EQ(halvingsOf(sizes), std::vector<int>(16, 0));
+    sizes.insert(sizes.end(), {glm::ivec2(4), glm::ivec2(2048), glm::ivec2(8192, 2), {0, 0}});
+    std::vector<int> wanted(16, 1);
+    wanted.insert(wanted.end(), {0, 0, 2, 0});
+    EXPECT_EQ(halvingsOf(sizes), wanted);
+}
+
 TEST(GltfWebp, AnimatedAndHugeImagesAreRefused) {
     // A header of the extended format: flags, three bytes unused, width - 1 and height - 1 in
     // three.
