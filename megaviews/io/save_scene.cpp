@@ -198,13 +198,9 @@ void ModelBuilder::addMaterial(const Material& in) {
 
 void ModelBuilder::addSpecular(const Material& in, tinygltf::Material& out) {
     Value::Object specular;
-    const double ior = double{in.index}, reflects = reflectanceOfIndex(ior);
-    double factor = double{in.specularFactor};
-    // The index of thin glass spreads what passes it, whatever part of the gloss is left.
-    const bool isDimmed = static_cast<double>(in.specular) < reflects * (1 - 1e-6);
-    if (in.filledIndex() > 0 || (in.transmission > 0 && isDimmed)) {
-        extend(out, "KHR_materials_ior", {{"ior", Value(ior)}});
-        factor *= std::min(static_cast<double>(in.specular) / reflects, 1.0);
+    const double factor = double{in.specularFactor};
+    if (in.filledIndex() > 0) {
+        extend(out, "KHR_materials_ior", {{"ior", Value(double{in.index})}});
     } else if (!in.unlit && in.specular != kSpecularOfGlass) {
         // The index of refraction that reflects so much; 0 stands for one without end.
         const double part = std::sqrt(static_cast<double>(in.specular));

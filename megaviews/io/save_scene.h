@@ -22,13 +22,12 @@ struct SceneToSave {
 // Writes a GLB: one mesh in root-cube units under a node that takes it to world units, a primitive
 // for each run of triangles of one material; metallic-roughness materials with all that Material
 // holds: factors and textures of colour, metal and roughness, normal maps, emission, alpha masks
-// and blending, KHR_materials_ior, _transmission, _volume, _clearcoat, _emissive_strength, _unlit
-// and the colour of _specular; textures as embedded PNG with their wrap modes, coordinates as they
-// are after KHR_texture_transform; KHR_lights_punctual with W/sr written as candela and W/m^2 as
-// lux, as the loader reads them; perspective and orthographic cameras in the order given, each with
-// the picture's aspect ratio. `lightScale` cannot reach unlit materials, for which glTF has no
-// strength; a light or an emission that is 0 is left out. The factor of KHR_materials_specular is
-// in the index of refraction, which is all that Material keeps of both. `asset.extras` holds the
+// and blending, KHR_materials_ior, _specular, _transmission, _volume, _clearcoat,
+// _emissive_strength and _unlit; textures as embedded PNG with their wrap modes, coordinates as
+// they are after KHR_texture_transform; KHR_lights_punctual with W/sr written as candela and W/m^2
+// as lux, as the loader reads them; perspective and orthographic cameras in the order given, each
+// with the picture's aspect ratio. `lightScale` cannot reach unlit materials, for which glTF has no
+// strength; a light or an emission that is 0 is left out. `asset.extras` holds the
 // root cube, which the loader takes so that positions keep their bits; normals may differ in the
 // last. An empty scene is a file without a mesh.
 //
