@@ -30,6 +30,7 @@ EnvironmentImage readEnvironment(const std::string& file) {
     }
     EnvironmentImage out{image.width, image.height, {}, {}};
     out.radiance.reserve(image.pixels());
+    constexpr float kMost = 65504;  // the largest half: a sun beyond it is stored as infinite
     std::size_t bad = 0;
     for (std::size_t i = 0; i < image.pixels(); ++i) {
         glm::vec3 c(image.rgb[3 * i], image.rgb[3 * i + 1], image.rgb[3 * i + 2]);
@@ -38,12 +39,15 @@ EnvironmentImage readEnvironment(const std::string& file) {
                  linearFromSrgbChannel(c.z)};
         }
         bool isBad = false;
-        for (int k = 0; k < 3; ++k) isBad |= !(c[k] >= 0) || !std::isfinite(c[k]);
+        for (int k = 0; k < 3; ++k) {
+            isBad |= !(c[k] >= 0);
+            if (std::isinf(c[k])) c[k] = kMost;
+        }
         bad += isBad;
         out.radiance.push_back(isBad ? glm::vec3(0) : c);
     }
     if (bad > 0) {
-        spdlog::warn("'{}': {} of {} pixels are negative or not finite and count as black", file,
+        spdlog::warn("'{}': {} of {} pixels are negative or no numbers and count as black", file,
                      bad, image.pixels());
     }
     if (2 * image.height != image.width) {

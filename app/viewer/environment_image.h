@@ -9,7 +9,7 @@
 namespace mv {
 
 // Floating point is linear radiance in W/(m^2 sr), whole numbers are sRGB. What is negative or not
-// finite counts as black, and is logged. Throws Error(ExitCode::input) naming the file.
+// a number counts as black, and is logged; what is infinite counts as 65504. Throws Error(ExitCode::input) naming the file.
 EnvironmentImage readEnvironment(const std::string& file);
 
 // Whether a file that is dropped on the window lights the scene: by its name.

@@ -44,14 +44,18 @@ Resource readDataUri(const std::string& uri, std::uint64_t atLeast) {
     return {std::move(*bytes), {}};
 }
 
-// The path below the folder, or nothing if the URI leads elsewhere.
-std::optional<std::filesystem::path> pathInside(const std::string& decoded) {
+// The file in the folder, or nothing if the URI leads elsewhere. Backslashes are part of a name or,
+// as exporters on Windows write them, between folders: the former where there is such a file.
+std::optional<std::filesystem::path> fileInside(const std::filesystem::path& folder,
+                                                const std::string& decoded) {
     if (decoded.find('\0') != std::string::npos) return std::nullopt;
     std::string slashes = decoded;
     std::replace(slashes.begin(), slashes.end(), '\\', '/');
     const std::filesystem::path normal = std::filesystem::path(slashes).lexically_normal();
     if (normal.empty() || normal.is_absolute() || *normal.begin() == "..") return std::nullopt;
-    return std::filesystem::path(decoded).lexically_normal();
+    const std::filesystem::path literal = std::filesystem::path(decoded).lexically_normal();
+    std::error_code none;
+    return folder / (std::filesystem::exists(folder / literal, none) ? literal : normal);
 }
 
 }  // namespace
@@ -106,12 +110,12 @@ Resource readUri(const std::filesystem::path& folder, const std::string& uri,
     if (colon != std::string::npos && colon > 1 && uri.find('/') == colon + 1) {
         return failed("the URI " + quote(uri) + " is not a file beside the glTF file");
     }
-    const auto inside = pathInside(*decoded);
+    const auto inside = fileInside(folder, *decoded);
     if (!inside) {
         return failed("the URI " + quote(uri) +
                       " leads out of the glTF file's folder and is refused");
     }
-    Resource result = readRegularFile(folder / *inside, atLeast > 0 ? atLeast : UINT64_MAX);
+    Resource result = readRegularFile(*inside, atLeast > 0 ? atLeast : UINT64_MAX);
     const std::string file = "the file " + quote(*decoded);
     if (!result.ok()) return failed(file + ": " + result.error);
     if (const std::size_t size = result.bytes.size(); size < atLeast) {
