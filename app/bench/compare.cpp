@@ -17,12 +17,15 @@ namespace {
 RgbImage readImage(const std::string& file) {
     NpyArray<float> array = readNpy<float>(file);
     const std::vector<std::uint64_t>& shape = array.shape;
-    constexpr std::uint64_t kMost = 1 << 16;  // a side
-    if (shape.size() != 3 || shape[2] != 3 || shape[0] > kMost || shape[1] > kMost) {
+    constexpr std::uint64_t kMost = 1 << 30;  // a side, or pixels in all
+    const auto isTooLarge = [&] {
+        return shape[0] > kMost || shape[1] > kMost || shape[0] * shape[1] > kMost;
+    };
+    if (shape.size() != 3 || shape[2] != 3 || isTooLarge()) {
         std::string text;
         for (const std::uint64_t n : shape) text += (text.empty() ? "" : "x") + std::to_string(n);
-        throw Error(ExitCode::input,
-                    "'" + file + "' is no picture: its shape is " + text + ", not HxWx3");
+        throw Error(ExitCode::input, "'" + file + "' is no picture: its shape is " + text +
+                                         ", not HxWx3 of at most a Gi of pixels");
     }
     return {static_cast<int>(shape[1]), static_cast<int>(shape[0]), std::move(array.elements)};
 }

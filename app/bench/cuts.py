@@ -20,8 +20,8 @@ import sys
 
 import OpenImageIO as oiio
 
-from scene_runs import (Failure, kept, measure_scenes, milliseconds, parse, parser_of, run,
-                        run_script)
+from scene_runs import (Failure, asked, beside, kept, measure_scenes, milliseconds, parse,
+                        parser_of, run, run_script)
 
 # Each with its flags; the second is what ratios are to.
 KINDS = {"MegaViews": ["--method", "megaviews"],
@@ -59,7 +59,7 @@ def measure(args, name, scene, rate, tree, kind, turn):
                 "--scene-tree", tree, *KINDS[kind]]
 
     def render():
-        stats = base.with_suffix(".stats.json")
+        stats = beside(base, "stats.json")
         run([str(args.programs / "megaviews"), "--headless", scene, "--no-config", "--quiet",
              "--environment", "none", "--placement", "traced", "--scene-depth", "9",
              "--view-depth", "9", "--gather-samples", "1", "--filter", "off",
@@ -70,7 +70,7 @@ def measure(args, name, scene, rate, tree, kind, turn):
                 "mapsMs": milliseconds(json.loads(stats.read_text()))[1]}
 
     return kept(args.out / f"{base.name}-{turn}.json",
-                [args.version, scene, turn, args.resolution, *settings, *args.flags], render)
+                asked(args, scene, turn, args.resolution, *settings, *args.flags), render)
 
 
 def rows_of(args, name, scene, rate):

@@ -17,8 +17,8 @@ import sys
 import numpy
 import OpenImageIO as oiio
 
-from scene_runs import (METHODS, Failure, kept, measure_scenes, milliseconds, parse, parser_of,
-                        run, run_script)
+from scene_runs import (METHODS, Failure, asked, beside, kept, measure_scenes, milliseconds, parse,
+                        parser_of, run, run_script)
 
 
 def own_change(frames, exact):
@@ -40,7 +40,7 @@ def flicker(frames, exact):
 
 
 def picture_of(base, frame):
-    return base.with_name(f"{base.name}.{frame:04}.exr")
+    return beside(base, f"{frame:04}.exr")
 
 
 def read(base, count):
@@ -62,9 +62,9 @@ def errors(args, base, frames, exact, shown):
     """PSNR and relMSE of all frames as one picture, by the project's own definitions."""
     files = []
     for name, pictures in (("frames", frames), ("exact", exact)):
-        files.append(base.with_suffix(f".{name}.npy"))
+        files.append(beside(base, f"{name}.npy"))
         numpy.save(files[-1], pictures.reshape(-1, *pictures.shape[2:]).astype(numpy.float32))
-    written = base.with_suffix(".errors.json")
+    written = beside(base, "errors.json")
     tonemap = json.loads(shown.get_string_attribute("megaviews.settings"))["tonemap"]
     try:
         run([str(args.programs / "megaviews-bench"), "compare", *map(str, files), "--metrics",
@@ -89,14 +89,14 @@ def measure(args, name, scene, method):
     settings = ["--vpls", args.vpls, "--frames", str(args.frames), "--frame-rate",
                 str(args.frame_rate)]
 
-    stats = base.with_suffix(".stats.json")
+    stats = beside(base, "stats.json")
 
     def render():
         run([str(args.programs / "megaviews"), "--headless", scene, "--no-config", "--quiet",
              "--environment", "none",
              "--method", method, "--resolution", args.resolution, "--references",
              str(args.out / "references"), *args.flags, *settings, "--view", "indirect",
-             "--stats", str(stats), "-o", str(base.with_suffix(".exr"))])
+             "--stats", str(stats), "-o", str(beside(base, "exr"))])
         frames, _ = read(base, args.frames)
         exact, shown = read(args.out / f"{name}-exact", args.frames)
         change = own_change(frames, exact)
@@ -107,11 +107,10 @@ def measure(args, name, scene, method):
                 "ownChange": change, "relmse": values["relmse"], "psnr": values["psnr"],
                 **(cost(json.loads(stats.read_text())) if method != "exact" else {})}
 
-    record = base.with_suffix(".json")
+    record = beside(base, "json")
     if not picture_of(base, args.frames - 1).exists():
         record.unlink(missing_ok=True)
-    return kept(record, [args.version, scene, method, args.resolution, *settings, *args.flags],
-                render)
+    return kept(record, asked(args, scene, method, args.resolution, *settings, *args.flags), render)
 
 
 def with_ratios(rows):

@@ -29,7 +29,8 @@ import pathlib
 import statistics
 import sys
 
-from scene_runs import Failure, kept, parse, parser_of, run, run_script, scenes_of, write_whole
+from scene_runs import (Failure, asked, kept, parse, parser_of, run, run_script, scenes_of,
+                        write_whole)
 
 FIRST_VIEWS = 1024
 RESOLUTIONS = (16, 32, 64)
@@ -90,7 +91,7 @@ class Scene:
                                 "method": ["megaviews"]})[0]
             return point["views"]["alive"] / point["views"]["requested"]
         return kept(self.file(f"alive-{distribution}-share"),
-                    [self.args.version, self.place, *self.args.flags], measure)
+                    asked(self.args, self.place, *self.args.flags), measure)
 
     def slots(self, distribution, living):
         share = self.alive(distribution)
@@ -129,7 +130,8 @@ def mean_and_interval(values, digits):
     mean = statistics.mean(values)
     if len(values) < 2:
         return f"{mean:.{digits}f}"
-    t = {2: 12.71, 3: 4.30, 4: 3.18, 5: 2.78, 6: 2.57, 7: 2.45, 8: 2.36}.get(len(values), 2.0)
+    t = {2: 12.71, 3: 4.30, 4: 3.18, 5: 2.78, 6: 2.57, 7: 2.45}.get(
+        len(values), 1.96 + 2.8 / (len(values) - 1))
     half = t * statistics.stdev(values) / math.sqrt(len(values))
     return f"{mean:.{digits}f} ± {half:.{digits}f}"
 

@@ -16,7 +16,8 @@ USAGE, INPUT, OUTPUT = 2, 3, 5
 # Okabe and Ito's palette: told apart with every form of colour vision.
 METHOD_COLORS = {
     "megaviews": "#0072B2", "manylods": "#D55E00", "raster": "#009E73", "ism": "#CC79A7",
-    "vir": "#F0E442", "rays": "#E69F00", "none": "#808080", "exact": "#000000", "pathtraced": "#56B4E9"}
+    "vir": "#F0E442", "rays": "#E69F00", "shadow-rays": "#8B4513", "none": "#808080",
+    "exact": "#000000", "pathtraced": "#56B4E9"}
 COLORS = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#808080", "#000000"]
 MARKERS = ["o", "s", "^", "D", "v", "P", "X", "*"]
 STAGES_SHOWN = 7  # the others are one

@@ -1,6 +1,8 @@
 """What cuts.py, flicker.py, paper.py and scenes.py share: their command line, scenes, runs of the viewer, what is kept."""
 
 import argparse
+import functools
+import hashlib
 import json
 import os
 import pathlib
@@ -35,13 +37,14 @@ def parser_of(doc, **defaults):
 
 def parse(parser, line):
     """The arguments, with what stands after -- as args.flags, the methods, where there are some, as
-    a list of known ones, and the program's version. Makes the folder args.out."""
+    a list of known ones, and the program's version and content. Makes the folder args.out."""
     end = line.index("--") if "--" in line else len(line)
     args = parser.parse_args(line[:end])
     args.flags = line[end + 1:]
     args.out.mkdir(parents=True, exist_ok=True)
     viewer = str(args.programs / "megaviews")
-    args.version = run([viewer, "--version"]).stdout.splitlines()[0]
+    version = run([viewer, "--version"]).stdout.splitlines()[0]
+    args.version = f"{version}, {hashlib.sha256(pathlib.Path(viewer).read_bytes()).hexdigest()}"
     if "methods" not in args:
         return args
     known = run([viewer, "--list", "methods"]).stdout.split()
@@ -92,6 +95,23 @@ def write_whole(file, text):
         os.replace(aside, file)
     finally:
         aside.unlink(missing_ok=True)
+
+
+@functools.cache
+def content_of(viewer, place):
+    """A hash of what a scene's files hold."""
+    said = run([viewer, place, "--info=json", "--no-config"]).stdout
+    return json.loads(said)["scene"]["hash"]
+
+
+def asked(args, place, *words):
+    """What decides a measurement: program, scene, and the words that ask for it."""
+    return [args.version, content_of(str(args.programs / "megaviews"), place), place, *words]
+
+
+def beside(base, ending):
+    """BASE.ENDING; a name may hold dots."""
+    return base.with_name(f"{base.name}.{ending}")
 
 
 def kept(file, asked, measure):

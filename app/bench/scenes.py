@@ -22,8 +22,8 @@ import re
 import statistics
 import sys
 
-from scene_runs import (METHODS, Failure, kept, milliseconds, parse, parser_of, run, run_script,
-                        scenes_of, write_whole)
+from scene_runs import (METHODS, Failure, asked, beside, kept, milliseconds, parse, parser_of, run,
+                        run_script, scenes_of, write_whole)
 
 ERRORS = ("psnr", "relmse", "flip", "leaked", "occluded")
 
@@ -46,18 +46,19 @@ def cameras_of(args, place):
 
 def reference(args, name, scene):
     """The path-traced indirect light, as EXR, and the picture as PNG beside it."""
-    truth = args.out / f"{name}-pathtraced.exr"
+    base = args.out / f"{name}-pathtraced"
+    truth = beside(base, "exr")
     command = [*command_of(args, scene), "--method", "pathtraced"]
 
     def trace():
         run([*command, "--view", "indirect", "-o", str(truth)])
-        run([*command, "-o", str(truth.with_suffix(".png"))])
+        run([*command, "-o", str(beside(base, "png"))])
         return {}
 
-    record = truth.with_suffix(".json")
+    record = beside(base, "json")
     if not truth.exists():
         record.unlink(missing_ok=True)
-    kept(record, [args.version, *command], trace)
+    kept(record, asked(args, scene[0], *command), trace)
     return truth
 
 
@@ -69,7 +70,7 @@ def measure(args, name, scene, method, truth, seed, samples=None):
               *(["--gather-samples", str(samples)] if samples else [])]
 
     def render():
-        stats = base.with_suffix(".stats.json")
+        stats = beside(base, "stats.json")
         done = run([*common, "--view", "indirect", "--warmup", "0" if method == "exact" else "2",
                     "--reference", str(truth), "--metrics", ",".join(ERRORS),
                     "--stats", str(stats)])
@@ -89,7 +90,7 @@ def measure(args, name, scene, method, truth, seed, samples=None):
                  "-o", str(args.out / f"{name}-{method}-flip.png")])
         return row
 
-    return kept(base.with_suffix(".json"), [args.version, *common], render)
+    return kept(beside(base, "json"), asked(args, scene[0], *common), render)
 
 
 def total_ms(row):
