@@ -105,11 +105,13 @@ ui::ErrorTable mapTable(std::string of, Method method, const MapErrorReport* rep
 
 Measuring::Measuring(const RunOptions& options)
     : options_(options.measure), references_(referenceFolder(options)) {
-    if (!options_.referenceFile.empty()) loadReference(options_.referenceFile);
+    if (options_.referenceFile.empty()) return;
+    loadReference(options_.referenceFile);
+    given_ = reference_;
 }
 
 void Measuring::loadReference(const std::string& file) {
-    referenceFile_ = readReference(file);
+    reference_ = std::make_shared<const ReferenceImage>(readReference(file));
     referenceName_ = file;
     keptFrom_.reset();
     errors_.stop();
@@ -117,7 +119,8 @@ void Measuring::loadReference(const std::string& file) {
 
 void Measuring::keepReference(const FrameRenderer& renderer, const Settings& settings,
                               const FrameCamera& camera, int side) {
-    referenceFile_ = ReferenceImage{radianceOf(renderer.radianceOf(side)), true, {}, {}, {}};
+    reference_ = std::make_shared<const ReferenceImage>(
+        ReferenceImage{radianceOf(renderer.radianceOf(side)), true, {}, {}, {}});
     referenceName_ = std::string("the kept picture, ") +
                      ui::methodTitle(settings.side[static_cast<std::size_t>(side)].method);
     keptFrom_ = camera;
@@ -127,8 +130,8 @@ void Measuring::keepReference(const FrameRenderer& renderer, const Settings& set
 
 void Measuring::prepare(const RunOptions& options, Settings& settings) const {
     const std::string& file = options_.referenceFile;
-    if (!referenceFile_ || referenceName_ != file) return;  // another, that a script has kept
-    const RgbImage& image = referenceFile_->image;
+    if (!given_) return;
+    const RgbImage& image = given_->image;
     const auto size = [](int width, int height) { return sizeText(width, height, "x"); };
     if (image.width != settings.resolution.width || image.height != settings.resolution.height) {
         throw Error(ExitCode::usage,
@@ -145,21 +148,21 @@ void Measuring::prepare(const RunOptions& options, Settings& settings) const {
                      ? "--view " + std::string(nameOf(settings.picture.view)) + " shows data"
                      : "--difference shows data"));
     }
-    wantedMetrics(options_, referenceFile_->linear);
-    takeFrom(settings, options, "exposure", referenceFile_->exposure, file);
-    takeFrom(settings, options, "tonemap", referenceFile_->toneMap, file);
+    wantedMetrics(options_, given_->linear);
+    takeFrom(settings, options, "exposure", given_->exposure, file);
+    takeFrom(settings, options, "tonemap", given_->toneMap, file);
     const std::string points =
         std::to_string(settings.averagesPixels() ? settings.setsWanted() : 1);
-    if (!referenceFile_->pixelSamples.empty() && referenceFile_->pixelSamples != points) {
+    if (!given_->pixelSamples.empty() && given_->pixelSamples != points) {
         spdlog::warn("'{}' has {} points a pixel, the picture {}: edges differ by that alone", file,
-                     referenceFile_->pixelSamples, points);
+                     given_->pixelSamples, points);
     }
 }
 
 Measurement Measuring::measure(const FrameRenderer& renderer, const Settings& settings) const {
-    const bool linear = referenceFile_->linear;
+    const bool linear = given_->linear;
     const Compared both = compared({.test = linear ? radianceOf(renderer) : displayOf(renderer),
-                                    .reference = referenceFile_->image,
+                                    .reference = given_->image,
                                     .linear = linear,
                                     .exposureEv = renderer.exposureEv(),
                                     .toneMap = settings.display.toneMap});
@@ -307,7 +310,7 @@ void Measuring::fillPictures(const FrameRenderer& renderer, const Picture& pictu
             isReference(settings.side[1].method) && !isReference(settings.side[0].method);
         pairs.push_back(rightIsTruth ? Pair{0, 1} : Pair{1, 0});
     }
-    if (referenceFile_) {
+    if (reference_) {
         pairs.push_back({0, -1});
         if (compares) pairs.push_back({1, -1});
     }
@@ -316,18 +319,17 @@ void Measuring::fillPictures(const FrameRenderer& renderer, const Picture& pictu
     };
     std::vector<std::size_t> measured;  // tables that are
     for (const Pair& pair : pairs) {
-        const bool linear = pair.reference >= 0 || referenceFile_->linear;
+        const bool linear = pair.reference >= 0 || reference_->linear;
         ui::ErrorTable table = emptyTable(title(pair.test), title(pair.reference), linear);
         const gl::Texture& texture = renderer.radianceOf(pair.test);
         if (!showsLight(settings.picture.view)) {
             table.reason = "This debug view shows data, not light.";
-        } else if (pair.reference < 0 && (referenceFile_->image.width != texture.width() ||
-                                          referenceFile_->image.height != texture.height())) {
-            table.reason =
-                "The reference is " +
-                sizeText(referenceFile_->image.width, referenceFile_->image.height, " x ") +
-                ", the picture " + sizeText(texture.width(), texture.height(), " x ") +
-                ": set the resolution to its size.";
+        } else if (pair.reference < 0 && (reference_->image.width != texture.width() ||
+                                          reference_->image.height != texture.height())) {
+            table.reason = "The reference is " +
+                           sizeText(reference_->image.width, reference_->image.height, " x ") +
+                           ", the picture " + sizeText(texture.width(), texture.height(), " x ") +
+                           ": set the resolution to its size.";
         } else if (pair.reference < 0 && keptFrom_ && keptOf_ != sceneName_) {
             table.reason = "The picture was kept of another scene: open that, or keep this one.";
         } else if (pair.reference < 0 && keptFrom_ &&
@@ -349,9 +351,9 @@ void Measuring::fillPictures(const FrameRenderer& renderer, const Picture& pictu
             const Pair& pair = pairs[i];
             const bool fromFile = pair.reference < 0;
             Comparison c{.test = radianceOf(renderer.radianceOf(pair.test)),
-                         .reference = fromFile ? referenceFile_->image
+                         .reference = fromFile ? reference_->image
                                                : radianceOf(renderer.radianceOf(pair.reference)),
-                         .linear = !fromFile || referenceFile_->linear,
+                         .linear = !fromFile || reference_->linear,
                          .exposureEv = renderer.exposureEv(),
                          .toneMap = settings.display.toneMap};
             if (!c.linear) c.test = displayImage(c.test, c.exposureEv, c.toneMap);

@@ -51,6 +51,27 @@ TEST(Measure, FindsNoErrorInThePictureItself) {
     EXPECT_EQ(display.out, "psnr inf dB\nssim 1\nflip 0\n");
 }
 
+// A script may keep a picture for the errors panel, also one of another size.
+TEST(Measure, IsAgainstTheFileWhateverAScriptKeeps) {
+    const Sandbox sandbox;
+    const ProcessResult r = sandbox.megaviews(smallPicture({"-o", "r.exr"}));
+    MV_SKIP_WITHOUT_GL(r);
+    ASSERT_EQ(r.code, 0) << r.err;
+    const std::string keep = "keep-left-as-reference; wait 4; ";
+    for (const std::string& script :
+         {"method=none; wait 2; " + keep + "method=megaviews; wait 2",
+          "resize 40x40; wait 2; " + keep + "resize " + std::string("96x54") + "; wait 2"}) {
+        const ProcessResult m = sandbox.megaviews(
+            smallPicture({"--reference", "r.exr", "--metrics", "mse", "--actions", script}));
+        EXPECT_EQ(m.code, 0) << m.err;
+        EXPECT_EQ(m.out, "mse 0\n");
+    }
+    const ProcessResult other = sandbox.megaviews(smallPicture(
+        {"--reference", "r.exr", "--metrics", "mse", "--actions", keep + "resize 40x40; wait 2"}));
+    EXPECT_EQ(other.code, 2);
+    EXPECT_NE(other.err.find("the picture 40x40"), std::string::npos) << other.err;
+}
+
 TEST(Measure, SaysTheSameOnOutputInStatisticsAndInThePicture) {
     const Sandbox sandbox;
     const ProcessResult r =
