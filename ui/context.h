@@ -70,7 +70,6 @@ struct PanelState {
     TimeLeft loading, reference;
     bool traversalShares = false;
     int mapOfA = 0, mapOfB = 0;  // which of PickedView::maps
-    bool onlyAlive = true;
     float magnification = 8;
     std::vector<Rect> plates;  // that this frame has put over the picture
 };

@@ -77,7 +77,7 @@ void nearestToA(Context& c) {
     }
     float nearest = 1e30f;
     for (const ViewRow& row : v.rows) {
-        if (!row.alive || row.slot == v.a->view.slot) continue;
+        if (row.slot == v.a->view.slot) continue;
         float squared = 0;
         for (std::size_t i = 0; i < 3; ++i) {
             const float d = row.position[i] - v.a->view.position[i];
@@ -92,20 +92,12 @@ void nearestToA(Context& c) {
 
 void list(Context& c) {
     const ViewsData& v = c.model.views;
-    if (!v.rows.empty()) c.figure(withThousands(v.total), {"/views/alive"});
-    ImGui::Checkbox("alive only", &c.state.onlyAlive);
-    c.named("views.alive-only");
-    ImGui::SameLine();
+    if (!v.rows.empty()) c.figure(withThousands(v.total), {"/panel/withMaps"});
+    const std::string count = withThousands(std::uint64_t{v.rows.size()});
     rightText(c,
-              v.total > v.rows.size() ? "first " + withThousands(std::uint64_t{v.rows.size()}) +
-                                            " of " + withThousands(v.total)
-                                      : withThousands(std::uint64_t{v.rows.size()}) + " slots",
+              v.total > v.rows.size() ? "first " + count + " of " + withThousands(v.total)
+                                      : count + " views",
               palette::kDim);
-    std::vector<const ViewRow*> shown;
-    shown.reserve(v.rows.size());
-    for (const ViewRow& row : v.rows) {
-        if (row.alive || !c.state.onlyAlive) shown.push_back(&row);
-    }
     if (!ImGui::BeginTable(
             "views", 5,
             ImGuiTableFlags_ScrollY | ImGuiTableFlags_RowBg | ImGuiTableFlags_BordersOuter,
@@ -118,14 +110,13 @@ void list(Context& c) {
     }
     valueHeads(c, "slot", {"bounce", "leaf", "flux, W", "pick"});
     ImGuiListClipper clipper;
-    clipper.Begin(static_cast<int>(shown.size()));
+    clipper.Begin(static_cast<int>(v.rows.size()));
     while (clipper.Step()) {
         for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; ++i) {
-            const ViewRow& row = *shown[static_cast<std::size_t>(i)];
+            const ViewRow& row = v.rows[static_cast<std::size_t>(i)];
             const ImU32 colour = row.slot == c.settings.inspect.pickA   ? palette::kViewA
                                  : row.slot == c.settings.inspect.pickB ? palette::kViewB
-                                 : row.alive                            ? palette::kText
-                                                                        : palette::kFaint;
+                                                                        : palette::kText;
             ImGui::PushID(static_cast<int>(row.slot));
             ImGui::TableNextRow();
             ImGui::TableNextColumn();
@@ -135,16 +126,14 @@ void list(Context& c) {
             ImGui::TableNextColumn();
             rightText(c, row.leaf >= 0 ? withThousands(row.leaf) : "-", colour);
             ImGui::TableNextColumn();
-            rightText(c, row.alive ? numberText(luminanceOf(row.flux)) : "dead", colour);
+            rightText(c, numberText(luminanceOf(row.flux)), colour);
             ImGui::TableNextColumn();
-            if (row.alive) {
-                const std::string slot = std::to_string(row.slot);
-                ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {c.px(5), 0});
-                if (button(c, "views.a:" + slot, "A")) c.settings.inspect.pickA = row.slot;
-                ImGui::SameLine(0, c.px(3));
-                if (button(c, "views.b:" + slot, "B")) c.settings.inspect.pickB = row.slot;
-                ImGui::PopStyleVar();
-            }
+            const std::string slot = std::to_string(row.slot);
+            ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {c.px(5), 0});
+            if (button(c, "views.a:" + slot, "A")) c.settings.inspect.pickA = row.slot;
+            ImGui::SameLine(0, c.px(3));
+            if (button(c, "views.b:" + slot, "B")) c.settings.inspect.pickB = row.slot;
+            ImGui::PopStyleVar();
             ImGui::PopID();
         }
     }
@@ -206,7 +195,8 @@ void pickedViews(Context& c) {
     for (const auto& [picked, slot] :
          {std::pair{&v.a, c.settings.inspect.pickA}, std::pair{&v.b, c.settings.inspect.pickB}}) {
         if (*picked || !slot) continue;
-        wrappedText("Slot " + withThousands(*slot) + " holds no living view.", palette::kNotice);
+        wrappedText("Slot " + withThousands(*slot) + " holds no view that has a map.",
+                    palette::kNotice);
     }
     if (!v.a || !v.b) {
         wrappedText(!v.a ? "Click a view in the picture, then Shift+click a second one: what both "
@@ -325,12 +315,11 @@ void viewsPanel(Context& c) {
     }
     pickedViews(c);
     shared(c);
-    sectionTitle(c, "All views");
+    sectionTitle(c, "Views that have maps");
     settingRow(c, "show-views");
     list(c);
-    histogram(c, "Alive by bounce", "##bounces", "views alive", "bounce", v.alivePerBounce, 0);
-    histogram(c, "Leaves by the views they hold", "##leaves", "leaves", "views", v.leavesByViews,
-              1);
+    histogram(c, "By bounce", "##bounces", "views", "bounce", v.perBounce, 0);
+    histogram(c, "Leaves by how many they hold", "##leaves", "leaves", "views", v.leavesByViews, 1);
 }
 
 }  // namespace mv::ui

@@ -118,7 +118,7 @@ std::vector<std::string> Instruments::missing(const Settings& settings) {
                                           sceneNodes.size(), tree.nodes.size());
     const auto pick = [&](const char* key, auto slot, const InspectedPick& picked) {
         if (!slot || picked.sortedView) return;
-        out.push_back(fmt::format("--{} {}: no view lives in this slot", key, *slot));
+        out.push_back(fmt::format("--{} {}: no view in this slot has a map", key, *slot));
     };
     pick("pick-a", asked.pickA, overlay.a);
     pick("pick-b", asked.pickB, overlay.b);

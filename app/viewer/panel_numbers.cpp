@@ -41,7 +41,8 @@ Json viewsNumbers(const ui::ViewsData& views) {
                           {"texels", {level.texelsA, level.texelsB}}});
     }
     return {{"name", "views"},
-            {"alivePerBounce", views.alivePerBounce},
+            {"withMaps", views.total},
+            {"perBounce", views.perBounce},
             {"leavesByViews", views.leavesByViews},
             {"a", pickedView(views.a)},
             {"b", pickedView(views.b)},

@@ -192,8 +192,8 @@ void ViewsInstrument::fill(const FrameRenderer& renderer, const Settings& settin
         for (std::size_t i = 0; i < tree.sortedViews.size(); ++i) {
             const View& view = tree.sortedViews[i];
             const std::size_t bounce = view.bounce > 0 ? view.bounce - 1 : 0;
-            if (data.alivePerBounce.size() <= bounce) data.alivePerBounce.resize(bounce + 1);
-            ++data.alivePerBounce[bounce];
+            if (data.perBounce.size() <= bounce) data.perBounce.resize(bounce + 1);
+            ++data.perBounce[bounce];
             if (i < kMaxRows) data.rows.push_back(rowOf(view, tree.leafOfView[i]));
         }
         for (std::size_t n = 0; n < tree.nodes.size(); ++n) {

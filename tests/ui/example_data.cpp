@@ -45,14 +45,13 @@ MethodStatistics methodOf(double whole, std::uint64_t mib) {
 void fillViews(ViewsData& v) {
     std::mt19937 random(7);
     const auto unit = [&] { return static_cast<float>(random() % 1000) / 1000; };
-    v.alivePerBounce = {3920, 3144, 2210, 1630};
+    v.perBounce = {3920, 3144, 2210, 1630};
     v.leavesByViews = {0, 812, 604, 377, 210, 122, 61, 30, 12};
     v.total = 16384;
     for (std::int64_t slot = 0; slot < 4096; ++slot) {
         ViewRow row;
         row.slot = slot;
         row.bounce = 1 + static_cast<int>(slot % 4);
-        row.alive = random() % 4 != 0;
         row.leaf = slot / 5;
         row.position = {unit(), unit(), unit()};
         row.normal = {0, 1, 0};

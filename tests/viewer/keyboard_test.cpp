@@ -173,7 +173,7 @@ TEST_F(KeyboardTest, EveryInstrumentIsUsed) {
     viewer.key("Space");
     EXPECT_NE(viewer.settings().side[0].maps.memoryMiB, Settings().side[0].maps.memoryMiB);
     viewer.use("tab:views");
-    viewer.reach("views.alive-only");
+    viewer.reach("show-views");
     viewer.key("Down");   // the list
     viewer.key("Space");  // into it
     viewer.key("Space");
