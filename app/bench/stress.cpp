@@ -320,10 +320,7 @@ const Runner::Measured& Runner::measured(const Case& oneCase) {
 
 Result Runner::run(const Case& oneCase) {
     const Measured& benign = measured(cases().front());
-    const bool isCompared = std::any_of(cases().begin(), cases().end(), [&](const Case& c) {
-        return c.name == oneCase.name || (c.sameAs && c.sameAs->other == oneCase.name);
-    });
-    const Measured own = isCompared ? measured(oneCase) : measure(oneCase);
+    const Measured& own = measured(oneCase);
     Result r = own.result;
 
     r.allowedFactor = oneCase.factor;

@@ -93,7 +93,14 @@ int runCases(const std::vector<const Case*>& chosen, const std::string& jsonFile
             writeRows(true);
             throw Cancelled();
         }
-        const Result r = runner.run(*c);
+        const Result r = [&] {
+            try {
+                return runner.run(*c);
+            } catch (...) {
+                writeRows(true);
+                throw;
+            }
+        }();
         std::fputs(tableRow(r).c_str(), stdout);
         for (const std::string& failure : r.failures)
             std::fprintf(stderr, "%s: %s\n", r.name.c_str(), failure.c_str());

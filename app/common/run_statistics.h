@@ -23,10 +23,6 @@ class RunStatistics {
     void add(const FrameStatistics& frame);
     std::size_t frames() const { return frames_; }
     std::uint64_t badPixels() const { return badPixels_; }
-    const FrameStatistics& last() const { return last_; }
-    const StageSamples& bothSides() const { return bothSides_; }
-    const StageSamples& method(std::size_t index) const { return methods_.at(index); }
-    const std::vector<double>& frameMs() const { return frameMs_; }
 
     // Counters are those of the last frame, bad pixels the sum over all.
     struct Run {
@@ -53,6 +49,7 @@ nlohmann::ordered_json hostJson();
 nlohmann::ordered_json sceneJson(const SceneAssets& assets);
 
 // Written aside and renamed; Error(ExitCode::output) names the file.
+std::string textOf(const nlohmann::ordered_json& json);
 void writeJson(const std::string& file, const nlohmann::ordered_json& json);
 
 }  // namespace mv

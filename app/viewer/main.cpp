@@ -120,13 +120,16 @@ int run(int argc, char** argv) {
     if (options.headless || options.gl == GlPlatform::egl || options.wantsResults()) {
         return headless(options, line.settings, "");
     }
-    if (options.frames > 1 || options.warmup > 0) {
-        spdlog::warn("--frames and --warmup: a window draws as many frames as it shows");
-    }
-    if (options.gl == GlPlatform::window) return runWindow(options, line.settings);
+    const auto window = [&] {
+        if (options.frames > 1 || options.warmup > 0) {
+            spdlog::warn("--frames and --warmup: a window draws as many frames as it shows");
+        }
+        return runWindow(options, line.settings);
+    };
+    if (options.gl == GlPlatform::window) return window();
     if (!displayAvailable()) return headless(options, line.settings, "no display: ");
     try {
-        return runWindow(options, line.settings);
+        return window();
     } catch (const Error& error) {
         if (error.code != ExitCode::graphics) throw;
         spdlog::warn("{}", error.what());
