@@ -86,11 +86,7 @@ void groups(Context& c) {
                 std::find(std::begin(kAbove), std::end(kAbove), setting.key) != std::end(kAbove);
             if (setting.group == group && !above) settingRow(c, setting);
         }
-        if (button(c, "reset-group:" + title, "Reset this group")) {
-            for (const SettingInfo& setting : settingsTable()) {
-                if (setting.group == group) reset(c.settings, setting, c.model.defaults);
-            }
-        }
+        if (button(c, "reset-group:" + title, "Reset this group")) resetGroup(c, group);
         ImGui::PopID();
         ImGui::Dummy({0, c.px(4)});
     }

@@ -60,13 +60,12 @@ void errorDialog(Context& c) {
     const float inner = ImGui::GetContentRegionAvail().x;
     wrappedText(m.error);
     ImGui::Dummy({inner, c.px(2)});
-    if (!m.errorFile.empty()) wrappedText(m.errorFile, palette::kAccent);
     if (!m.errorHint.empty()) wrappedText(m.errorHint, palette::kDim);
     ImGui::Dummy({inner, c.px(6)});
     const float wide = c.px(90), gap = ImGui::GetStyle().ItemSpacing.x;
     ImGui::SetCursorPosX(ImGui::GetCursorPosX() + inner - 2 * wide - gap);
     if (button(c, "error.copy", "Copy", wide)) {
-        ImGui::SetClipboardText((m.error + "\n" + m.errorFile + "\n" + m.errorHint).c_str());
+        ImGui::SetClipboardText((m.error + "\n" + m.errorHint).c_str());
     }
     ImGui::SameLine();
     const bool closed = button(c, "error.close", "Close", wide);
@@ -74,7 +73,6 @@ void errorDialog(Context& c) {
     if (closed || dismissedByKey()) {
         c.requests.errorDismissed = true;
         m.error.clear();
-        m.errorFile.clear();
         m.errorHint.clear();
         ImGui::CloseCurrentPopup();
     }
@@ -111,14 +109,11 @@ void shaderErrors(Context& c) {
     ImGui::PushTextWrapPos(ImGui::GetCursorPosX() + room);
     ImGui::TextDisabled("The last good one goes on. F5 tries again.");
     ImGui::PopTextWrapPos();
-    for (const ShaderError& error : errors) {
-        const std::string place =
-            error.file + (error.line > 0 ? ":" + std::to_string(error.line) : "");
-        all += place + ": " + error.message + "\n";
+    for (const std::string& error : errors) {
+        all += error + "\n";
         ImGui::Dummy({0, c.px(2)});
-        elidedText(place, room, palette::kAccent);
         ImGui::PushTextWrapPos(ImGui::GetCursorPosX() + room);
-        ImGui::TextUnformatted(error.message.c_str());
+        ImGui::TextUnformatted(error.c_str());
         ImGui::PopTextWrapPos();
     }
     ImGui::Dummy({room, c.px(2)});

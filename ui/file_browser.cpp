@@ -95,7 +95,8 @@ bool FileBrowser::saves() const {
 
 // A file that is written gets the extension by which it is known again.
 std::string FileBrowser::fileOf(const std::string& text) const {
-    fs::path path = text[0] == '~' ? fs::path(homeFolder() + text.substr(1)) : fs::path(text);
+    const bool fromHome = text == "~" || text.starts_with("~/");
+    fs::path path = fromHome ? fs::path(homeFolder() + text.substr(1)) : fs::path(text);
     if (path.is_relative()) path = fs::path(folder_) / path;
     std::error_code error;
     if (saves() && !fs::is_directory(path, error)) {

@@ -50,11 +50,11 @@ void noteMissing(Context& c) {
     const Model& m = c.model;
     Missing missing(c);
     missing(m.sceneName, m.cameras, m.animations, m.variants, m.warnings, m.notes, m.extensions,
-            m.ignored, m.loadingStage, m.error, m.errorFile, m.errorHint, m.referenceStage);
+            m.ignored, m.loadingStage, m.error, m.errorHint, m.referenceStage);
     for (const LightRow& light : m.lights) missing(light.name);
     for (const RecentFile& file : m.recent) missing(file.path);
     for (const Toast& toast : m.toasts) missing(toast.text);
-    for (const ShaderError& error : m.shaderErrors) missing(error.file, error.message);
+    for (const std::string& error : m.shaderErrors) missing(error);
     for (const auto* tables : {&m.errors.tables, &m.errors.maps}) {
         for (const ErrorTable& table : *tables) missing(table.of, table.against, table.reason);
     }

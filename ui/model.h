@@ -84,16 +84,9 @@ struct StartTile {
     Picture picture;
 };
 
-struct ShaderError {
-    std::string file;
-    int line = 0;
-    std::string message;
-};
-
 // ---------------------------------------------------------------- views panel
 struct ViewRow {
     std::int64_t slot = -1;
-    bool alive = true;
     int bounce = 0;  // 1 = first; 0 = not from a light path
     std::int64_t leaf = -1;
     Float3 position{}, normal{};  // root-cube units
@@ -130,9 +123,9 @@ struct MapTexel {
     std::string content;  // what was seen there, in lines
 };
 struct ViewsData {
-    std::vector<std::uint64_t> alivePerBounce;  // [0] = first bounce
-    std::vector<std::uint64_t> leavesByViews;   // [n] = leaves that hold n views
-    std::vector<ViewRow> rows;                  // may be capped: `total` says how many there are
+    // Of the views that have maps: by bounce ([0]: the first), and leaves by the views they hold.
+    std::vector<std::uint64_t> perBounce, leavesByViews;
+    std::vector<ViewRow> rows;  // may be capped: `total` says how many there are
     std::uint64_t total = 0;
     std::optional<PickedView> a, b;
     std::vector<SharedLevel> shared;
@@ -291,8 +284,8 @@ struct Model {
     // loading and trouble
     std::string loadingStage;  // non-empty while a scene loads
     float loadingFraction = 0;
-    std::string error, errorFile, errorHint;  // a dialog until dismissed: cause, where, what helps
-    std::vector<ShaderError> shaderErrors;    // shown until it is empty again
+    std::string error, errorHint;           // a dialog until dismissed: cause, what helps
+    std::vector<std::string> shaderErrors;  // shown until it is empty again
     std::vector<Toast> toasts;
     std::optional<TourStep> tour;  // while it is taken
 

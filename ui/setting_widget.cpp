@@ -364,6 +364,12 @@ bool field(Context& c, const SettingInfo& setting, float width) {
 
 }  // namespace
 
+void resetGroup(Context& c, SettingGroup group) {
+    for (const SettingInfo& setting : settingsTable()) {
+        if (setting.group == group) reset(c.settings, setting, c.model.defaults);
+    }
+}
+
 bool settingMenu(Context& c, const SettingInfo& setting) {
     bool changed = false;
     if (!ImGui::BeginPopupContextItem("##menu")) return false;
@@ -377,9 +383,7 @@ bool settingMenu(Context& c, const SettingInfo& setting) {
     }
     c.named("reset:" + key);
     if (ImGui::MenuItem(("Reset all of " + std::string(groupTitle(setting.group))).c_str())) {
-        for (const SettingInfo& other : settingsTable()) {
-            if (other.group == setting.group) reset(c.settings, other, c.model.defaults);
-        }
+        resetGroup(c, setting.group);
         changed = true;
     }
     ImGui::Separator();

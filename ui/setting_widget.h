@@ -19,6 +19,8 @@ bool settingField(Context& c, std::string_view key, float width);
 void rowLabel(Context& c, std::string_view label, bool changed = false);
 float rowFieldWidth();
 
+// All settings of a group get their defaults.
+void resetGroup(Context& c, SettingGroup group);
 // The menu of a right click on the last item: the default, the group's defaults, the setting as an
 // option. True if a value changed.
 bool settingMenu(Context& c, const SettingInfo& setting);

@@ -421,8 +421,7 @@ void applyConfig(CommandLine& line, const Parser& parser) {
     }
 }
 
-// A state replaces all settings. A camera chosen by name on the line stands where the scene has it,
-// not where the state's stood.
+// A state replaces all settings.
 void applyState(CommandLine& line, const Parser& parser, const ReadPictureState& readPicture) {
     const State state = loadState(parser.state, readPicture);
     line.run.inputs.push_back(parser.state);
@@ -436,10 +435,6 @@ void applyState(CommandLine& line, const Parser& parser, const ReadPictureState&
         line.run.sceneHash = state.sceneHash;
     } else if (parser.scene != state.scene) {
         line.settings.camera.name.clear();  // of that scene; where it stood is filled in
-    }
-    if (parser.app.count("--camera") == 0) return;
-    for (const char* key : {"camera-position", "camera-target", "camera-up", "fov"}) {
-        reset(line.settings, *findSetting(key));
     }
 }
 
@@ -489,6 +484,11 @@ CommandLine parseCommandLine(const std::vector<std::string>& arguments,
     if (!parser.preset.empty()) applyPresetNamed(line, parser.preset);
     if (!parser.state.empty()) applyState(line, parser, program.readPictureState);
     for (const auto& apply : parser.given) apply(line);
+    // A camera chosen by name stands where the scene has it, not where a state's stood.
+    if (std::ranges::any_of(parser.settings,
+                            [](const auto& given) { return given.setting->key == "camera"; })) {
+        line.settings.camera = {};
+    }
     applySettings(line, std::move(parser.settings));
     if (!parser.scene.empty()) line.run.scene = parser.scene;
     line.run.sceneGiven = !parser.scene.empty() || !parser.state.empty();

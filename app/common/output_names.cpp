@@ -195,7 +195,9 @@ std::filesystem::path picturesFolder() {
         if (!none && mayWriteInto(named)) return named;
         if (fs::path folder = fs::path(home) / "Pictures"; mayWriteInto(folder)) return folder;
     }
-    return fs::current_path();
+    std::error_code gone;
+    const fs::path here = fs::current_path(gone);
+    return gone ? "." : here;
 }
 
 std::string freeFileName(const std::string& prefix, const std::string& extension) {

@@ -70,11 +70,14 @@ Json sceneJson(const SceneAssets& assets) {
             {"leavesPerLevel", leaves}};
 }
 
+std::string textOf(const Json& json) {
+    // Names come from files and command lines: a byte that is no UTF-8 must not lose the report.
+    return json.dump(2, ' ', false, Json::error_handler_t::replace);
+}
+
 void writeJson(const std::string& file, const Json& json) {
     OutputFile output(file);
-    // Names come from files and command lines: a byte that is no UTF-8 must not lose the report.
-    output.write(json.dump(2, ' ', false, Json::error_handler_t::replace));
-    output.write(std::string_view("\n"));
+    output.write(textOf(json) + "\n");
     output.commit();
 }
 

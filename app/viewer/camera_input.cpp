@@ -56,7 +56,10 @@ void CameraInput::handle(const InputEvent& event, bool mouseTaken) {
     } else if (const auto* key = std::get_if<KeyChanged>(&event)) {
         modifiers_ = key->modifiers;
         if (key->pressed) {
-            held_.insert(key->key);
+            // With these a letter is a command's, but for a hand that flies.
+            const bool command = key->key < GLFW_KEY_ESCAPE &&
+                                 (key->modifiers & (GLFW_MOD_CONTROL | GLFW_MOD_ALT)) != 0;
+            if (!command || drag_ == MouseButton::right) held_.insert(key->key);
         } else {
             held_.erase(key->key);
         }

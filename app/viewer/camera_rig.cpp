@@ -18,6 +18,7 @@ constexpr float kFar = 100;              // root-cube units, as far as anybody g
 void CameraRig::setScene(std::shared_ptr<const SceneAssets> assets) {
     assets_ = std::move(assets);
     bounds_ = assets_->bounds();
+    index_ = 0;
 }
 
 // A room: in the bounds, with walls to see in most directions; a roof may be open. The back of a
@@ -167,6 +168,7 @@ void CameraRig::frameScene(Settings& settings) {
 void CameraRig::choose(Settings& settings, int step) {
     const int count = static_cast<int>(assets_->scene.cameras.size());
     if (count == 0) return;
+    index_ = static_cast<int>(sceneCamera().value_or(static_cast<std::size_t>(index_)));
     index_ = ((index_ + step) % count + count) % count;
     settings.camera.name = std::to_string(index_);
 }

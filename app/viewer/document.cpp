@@ -99,7 +99,9 @@ void Document::setPictureSize(int width, int height) {
 }
 
 bool Document::noteChange() {
-    noted_.camera = settings_.camera;  // hands move it without a setting: no step leads back there
+    // Hands move it without a setting, and the window has the size: no step leads back there.
+    noted_.camera = settings_.camera;
+    noted_.resolution = settings_.resolution;
     if (settings_ == noted_) return false;
     undo_.push_back(noted_);
     if (undo_.size() > kUndoSteps) undo_.pop_front();

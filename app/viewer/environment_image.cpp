@@ -75,4 +75,8 @@ std::shared_ptr<const EnvironmentImage> EnvironmentSlot::of(const EnvironmentSet
     return image_;
 }
 
+void EnvironmentSlot::readAgain() {
+    if (image_) image_ = std::make_shared<const EnvironmentImage>(readEnvironment(file_));
+}
+
 }  // namespace mv

@@ -24,7 +24,13 @@ SceneSlot::SceneSlot(std::filesystem::path cacheDirectory)
 
 void SceneSlot::load(const std::string& scene, const Settings& settings) {
     restoring_.reset();
+    opening_ = false;
     loader_.start(scene, settings, cacheDirectory_);
+}
+
+void SceneSlot::open(const std::string& scene, const Settings& settings) {
+    load(scene, settings);
+    opening_ = true;
 }
 
 void SceneSlot::restore(const State& state) {
@@ -74,13 +80,13 @@ std::optional<SceneSlot::Change> SceneSlot::take(FrameRenderer& renderer) {
     renderer.setViews(std::move(views));
     const bool sameFile = assets_ && name_ == loader_.scene() &&
                           loaded_.scene.fileScene == loader_.settings().scene.fileScene;
-    const bool sameScene = sameFile && !restoring;
+    const bool sameScene = sameFile && !restoring && !opening_;
     if (!sameScene) renderer.forgetExposure();
     assets_ = std::move(assets);
     name_ = loader_.scene();
     viewsHash_ = std::move(viewsHash);
     loaded_ = loader_.settings();
-    return Change{sameFile, sameScene, std::move(restoring)};
+    return Change{sameFile, sameScene, std::exchange(opening_, false), std::move(restoring)};
 }
 
 }  // namespace mv

@@ -18,8 +18,9 @@ class SceneSlot {
   public:
     explicit SceneSlot(std::filesystem::path cacheDirectory);  // empty: no cache
 
-    // Both replace what is being loaded. What is on screen stays until take().
-    void load(const std::string& scene, const Settings& settings);
+    // Each replaces what is being loaded. What is on screen stays until take().
+    void load(const std::string& scene, const Settings& settings);  // perhaps the same, loaded anew
+    void open(const std::string& scene, const Settings& settings);  // to be seen from the start
     void restore(const State& state);  // what else the state says comes into effect with its scene
     // Octree depth, animation and a file of views belong to the load: the same scene is loaded anew
     // if the settings ask for others.
@@ -40,8 +41,9 @@ class SceneSlot {
     // Puts a scene that is ready into the renderer; the old one goes only when the new one stands
     // there. Throws the loader's and the renderer's errors, once; then the old one stays.
     struct Change {
-        bool sameFile = false;          // as that on screen
-        bool sameScene = false;         // and loaded anew: camera and history stay
+        bool sameFile = false;   // as that on screen
+        bool sameScene = false;  // and loaded anew: camera and history stay
+        bool opened = false;
         std::optional<State> restored;  // with it
     };
     std::optional<Change> take(FrameRenderer& renderer);
@@ -56,6 +58,7 @@ class SceneSlot {
     std::filesystem::path cacheDirectory_;
     SceneLoader loader_;
     std::optional<State> restoring_;
+    bool opening_ = false;
     std::shared_ptr<SceneAssets> assets_;
     std::string name_, viewsHash_;
     Settings loaded_;  // that assets_ was loaded with

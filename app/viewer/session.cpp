@@ -93,6 +93,7 @@ bool Session::waiting() const { return measuring_.busy() && !picture_.isSupplied
 void Session::frame(double seconds, int width, int height, unsigned framebuffer) {
     changeScale(width, height);
     panels_->imgui.addGlyphs(panels_->interface.missingCharacters());
+    if (tourAsked_ && assets()) perform(Action::tour);
     if (tour_) attempt([&] { tour_->advance(width, height); });
     takeInput();
     attempt([&] { takeScene(); },
@@ -170,9 +171,7 @@ void Session::takeInput() {
             if (drop->files.empty()) continue;
             openFile(drop->files.front());
             if (const std::size_t others = drop->files.size() - 1; others > 0) {
-                toast(fmt::format("{} opened; one file at a time: {} left",
-                                  std::filesystem::path(drop->files.front()).filename().string(),
-                                  others));
+                toast(fmt::format("one file at a time: {} left", others));
             }
         }
         redraw_ = true;
@@ -326,20 +325,29 @@ bool Session::takeScene() {
     if (panels_) panels_->interface.forgetFrames();
     if (change->restored) {
         warnIfChanged(change->restored->sceneHash, assets()->scene, scene_.viewsHash());
-        // A state of the scene on screen is a change of settings, which may be undone.
-        if (change->sameFile) {
-            document_.edit() = change->restored->settings;
-        } else {
-            document_.replace(change->restored->settings);
-        }
         model_.playing = change->restored->playing;
         model_.speed = change->restored->speed;
+    }
+    if (change->restored || change->opened) {
+        const Settings taken =
+            change->restored ? change->restored->settings : forAnotherScene(settings());
+        // Of the scene on screen it is a change of settings, which may be undone.
+        if (change->sameFile) {
+            document_.edit() = taken;
+        } else {
+            document_.replace(taken);
+        }
     }
     describeScene();
     remember([&](UserState& state) { state.noteRecent(scene_.name()); });
     if (change->sameScene) return true;
-    if (!change->sameFile) document_.forgetChanges();
+    if (!change->sameFile) {
+        document_.forgetChanges();
+        good_ = forAnotherScene(settings());  // until a picture of it stands
+        scene_.keepLoaded(good_);
+    }
     startS_ = settings().scene.timeS;
+    model_.animationS = animationLengthS();
     setTime(startS_);
     attempt([&] { camera_.reset(document_.edit(), timeS_); });
     goodCamera_ = camera_.camera();
@@ -418,6 +426,7 @@ void Session::fillPanels() {
     model_.tour = tour_ ? std::optional(tour_->shown()) : std::nullopt;
     if (model_.software) model_.notices = {document_.notice()};
     model_.defaults = document_.defaults();
+    model_.defaults.resolution = settings().resolution;  // the window's
     model_.canUndo = document_.canUndo();
     model_.canRedo = document_.canRedo();
     model_.setsWanted = wantedSettings().setsWanted();

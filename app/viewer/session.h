@@ -94,7 +94,7 @@ class Session {
 
     void perform(Action action);
     void perform(const ui::Requests& requests);
-    void closeInstruments();
+    void showInstrument(std::optional<ui::Instrument> which);
     void releaseOtherSide() { model_.otherSide = false; }
     // Opens a scene, a saved state or a picture that carries one; trouble ends in the error dialog.
     void openFile(const std::string& file);
@@ -242,6 +242,7 @@ class Session {
     Measuring measuring_;
     Instruments instruments_;
     std::unique_ptr<Tour> tour_;
+    bool tourAsked_ = false;  // before there was a scene
     std::unique_ptr<StartPage> startPage_;
     std::string windowFile_;
     bool toastOfWindow_ = false;

@@ -88,14 +88,16 @@ struct Session::Actions {
         t[Action::reload] = [](Session& s) {
             if (!s.assets()) return;
             s.picture_.renderer().forgetExposure();
-            s.environment_.forget();
+            s.attempt([&] { s.environment_.readAgain(); });
             s.scene_.load(s.scene_.name(), s.settings());
         };
         t[Action::screenshotPng] = [](Session& s) { s.savePictureAs(".png"); };
         t[Action::screenshotExr] = [](Session& s) { s.savePictureAs(".exr"); };
         t[Action::screenshotWindow] = [](Session& s) {
-            s.windowFile_ = freeFileName("megaviews", ".png");
-            s.toastOfWindow_ = true;
+            s.attempt([&] {
+                s.windowFile_ = freeFileName("megaviews", ".png");
+                s.toastOfWindow_ = true;
+            });
         };
         t[Action::saveNumbers] = [](Session& s) {
             if (!s.picture_.shown()) return;
@@ -107,7 +109,7 @@ struct Session::Actions {
         };
         t[Action::copyNumbers] = [](Session& s) {
             if (!s.picture_.shown()) return;
-            s.panels_->imgui.copy(s.numbers().dump(2));
+            s.panels_->imgui.copy(textOf(s.numbers()));
             s.toast("numbers copied");
         };
         t[Action::copyTable] = [](Session& s) {
@@ -266,6 +268,7 @@ struct Session::Actions {
             } else if (s.assets()) {
                 s.tour_ = std::make_unique<Tour>(s, s.host_);
             }
+            s.tourAsked_ = !s.assets();
         };
         t[Action::commands] = toggles(&ui::Model::palette);
         t[Action::largerInterface] = [](Session& s) {
@@ -311,12 +314,16 @@ void Session::perform(const ui::Requests& requests) {
         });
     }
     if (requests.clearRecent) remember([](UserState& state) { state.recent.clear(); });
-    std::string& lights = document_.edit().scene.lights;
-    for (const ui::LightEdit& edit : requests.lights) lights = edited(lights, edit);
-    if (requests.lightDrag && requests.lightDrag->light < model_.lights.size()) {
-        const ui::LightRow& row = model_.lights[requests.lightDrag->light];
-        lights = edited(lights, editOf(lightView(), row, *requests.lightDrag));
-    }
+    attempt([&] {
+        std::string lights = settings().scene.lights;
+        for (const ui::LightEdit& edit : requests.lights) lights = edited(lights, edit);
+        if (requests.lightDrag && requests.lightDrag->light < model_.lights.size()) {
+            const ui::LightRow& row = model_.lights[requests.lightDrag->light];
+            lights = edited(lights, editOf(lightView(), row, *requests.lightDrag));
+        }
+        parseLightPlacements(lights, "lights");  // whether they can be placed so
+        document_.edit().scene.lights = lights;
+    });
     if (!requests.saveState.empty()) {
         attempt([&] {
             saveState(requests.saveState);
@@ -368,14 +375,14 @@ void Session::reloadShaders() {
     model_.shaderErrors.clear();
     for (const std::string& message : picture_.renderer().reloadShaders()) {
         spdlog::error("{}", message);
-        model_.shaderErrors.push_back({{}, 0, message});
+        model_.shaderErrors.push_back(message);
     }
     if (model_.shaderErrors.empty()) toast("shaders are up to date");
     picture_.forget();  // draw with the new ones
 }
 
-void Session::closeInstruments() {
-    model_.instrument.reset();
+void Session::showInstrument(std::optional<ui::Instrument> which) {
+    model_.instrument = which;
     model_.picking = ui::Picking::none;
 }
 
@@ -410,22 +417,7 @@ void Session::openFile(const std::string& file) {
                 restore(loadState(file, readPictureState));
                 return;
             }
-            State state;
-            state.scene = file;
-            state.settings = settings();
-            copySceneChoices(state.settings, {});
-            state.settings.scene.lights.clear();
-            state.settings.scene.environment = {};
-            state.settings.display.exposureEv.reset();
-            InspectSettings& inspect = state.settings.inspect;
-            for (auto picked : {&InspectSettings::pickA, &InspectSettings::pickB,
-                                &InspectSettings::pairScene, &InspectSettings::pairView}) {
-                (inspect.*picked).reset();
-            }
-            inspect.stepScene = inspect.stepView = 0;
-            state.playing = model_.playing;
-            state.speed = model_.speed;
-            restore(state);
+            scene_.open(file, forAnotherScene(settings()));
         },
         "The scene on screen was kept.");
 }
@@ -489,6 +481,7 @@ nlohmann::ordered_json Session::numbers() const {
                               .partial = !picture_.still(),
                               .deterministic = options_.headless || options_.deterministic});
     json["draft"] = picture_.isDraft();
+    json["memory"] = toJson(statistics())["memory"];  // as it is now
     // Pairs are counted by level while that is looked at.
     for (std::size_t i = 0; i < json["methods"].size(); ++i) {
         if (statistics().methods.at(i).pairsPerLevel.empty()) continue;

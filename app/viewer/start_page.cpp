@@ -54,7 +54,9 @@ gl::Texture textureOf(std::span<const unsigned char> jpeg) {
 
 }  // namespace
 
-StartPage::StartPage() : found_(scenesNear(fs::current_path().string(), kMostFound)) {
+StartPage::StartPage() {
+    std::error_code gone;
+    found_ = scenesNear(fs::current_path(gone).string(), kMostFound);
     for (const std::string& scene : builtinNames()) {
         ui::StartTile tile{scene, {}};
         if (const auto jpeg = pictureOf(scene); !jpeg.empty()) {

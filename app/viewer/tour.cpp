@@ -44,7 +44,10 @@ constexpr std::array<Step, 5> kSteps = {{
 }  // namespace
 
 Tour::Tour(Session& session, Host& host)
-    : session_(session), host_(host), before_(session.stateAsAsked()) {
+    : session_(session),
+      host_(host),
+      before_(session.stateAsAsked()),
+      instrumentBefore_(session.model().instrument) {
     begin();
 }
 
@@ -52,7 +55,7 @@ void Tour::begin() {
     const std::string home =
         step_ == 0 ? "open builtin:atrium; wait-loading; reset-all-settings; vpls=4K; "
                    : "compare=off; view=final; ";
-    session_.closeInstruments();
+    session_.showInstrument({});
     viewPicked_ = kSteps[step_].withView == nullptr;
     run(home + kSteps[step_].script);
 }
@@ -92,7 +95,7 @@ void Tour::restart() {
 }
 
 void Tour::leave() {
-    session_.closeInstruments();
+    session_.showInstrument(instrumentBefore_);
     session_.restore(before_);
 }
 

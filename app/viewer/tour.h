@@ -31,6 +31,7 @@ class Tour {
     Session& session_;
     Host& host_;
     const State before_;
+    const std::optional<ui::Instrument> instrumentBefore_;
     std::size_t step_ = 0;
     bool viewPicked_ = true;
     std::unique_ptr<ScriptRunner> script_;

@@ -73,10 +73,10 @@ int runWindow(const RunOptions& options, const Settings& settings) {
     };
     try {
         runFrames(window, session, script);
-    } catch (const Error&) {
+    } catch (...) {
         try {
             leave();
-        } catch (const Error& error) {  // of two the first counts
+        } catch (const std::exception& error) {  // of two the first counts
             spdlog::debug("{}", error.what());
         }
         throw;

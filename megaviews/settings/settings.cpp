@@ -85,6 +85,20 @@ void copySceneChoices(Settings& settings, const Settings& from) {
     settings.views.file = from.views.file;
 }
 
+Settings forAnotherScene(Settings settings) {
+    copySceneChoices(settings, {});
+    settings.scene.lights.clear();
+    settings.scene.environment = {};
+    settings.display.exposureEv.reset();
+    InspectSettings& inspect = settings.inspect;
+    for (auto picked : {&InspectSettings::pickA, &InspectSettings::pickB,
+                        &InspectSettings::pairScene, &InspectSettings::pairView}) {
+        (inspect.*picked).reset();
+    }
+    inspect.stepScene = inspect.stepView = 0;
+    return settings;
+}
+
 void validate(const Settings& s) {
     const auto fail = [](const std::string& message) { throw Error(ExitCode::usage, message); };
     if (!s.views.file.empty() && s.views.particles > 0) {

@@ -307,5 +307,7 @@ void setMethod(Settings& settings, Method method);
 Settings sideAlone(const Settings& settings, std::size_t side);
 // Takes over what is said of a scene and means nothing in another: camera, animation, time, views.
 void copySceneChoices(Settings& settings, const Settings& from);
+// The same settings for another scene: of these, lights, sky, exposure and what is picked, none.
+Settings forAnotherScene(Settings settings);
 
 }  // namespace mv

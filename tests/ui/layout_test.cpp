@@ -145,7 +145,6 @@ TEST(Layout, OverlaysLieInsideAtEverySize) {
         });
         with("error", [](Screen& s) {
             s.model.error = std::string(400, 'x') + " " + std::string(300, 'y');
-            s.model.errorFile = "/a/very/long/path/" + std::string(200, 'p');
             s.model.errorHint = "Try another one.";
         });
         with("start page", [](Screen& s) {
@@ -168,7 +167,8 @@ TEST(Layout, OverlaysLieInsideAtEverySize) {
             s.model.loadingStage = "building the octree of a scene with a rather long stage name";
             s.model.toasts = {{std::string(200, 't')}, {"short"}};
             for (int i = 0; i < 3; ++i) {
-                s.model.shaderErrors.push_back({"shaders/passes/gather.frag", i, "undeclared"});
+                s.model.shaderErrors.push_back("shaders/passes/gather.frag:" + std::to_string(i) +
+                                               ": undeclared");
             }
             s.model.legends = {{"Sharing", "views", 1, 512, true, {{0, 0, 0}, {1, 1, 1}}, {}}};
         });
@@ -176,7 +176,7 @@ TEST(Layout, OverlaysLieInsideAtEverySize) {
             compareMethods(s);
             s.model.instrument = Instrument::profiler;
             s.model.toasts = {{"picture written: /home/somebody/megaviews-1.png"}, {"short"}};
-            s.model.shaderErrors = {{"shaders/passes/gather.frag", 12, "undeclared"}};
+            s.model.shaderErrors = {"shaders/passes/gather.frag:12: undeclared"};
             s.model.legends = {{"Sharing", "views", 1, 512, true, {{0, 0, 0}, {1, 1, 1}}, {}}};
         });
         with("difference, legend and toast", [](Screen& s) {

@@ -302,7 +302,7 @@ TEST(Panels, ExactMapsAreAskedForAndGivenUp) {
 TEST(Panels, ErrorsStayUntilTheyAreClosed) {
     Screen s(1280, 720, 1);
     s.model.error = "no such file";
-    s.model.errorFile = "/tmp/a.gltf";
+    s.model.errorHint = "/tmp/a.gltf";
     s.frame(4);
     EXPECT_TRUE(s.has("panel:error"));
     s.click("error.copy");

@@ -106,20 +106,18 @@ std::vector<Case> cases() {
              false,
              {},
              {{"rendered", {0.3f, 0.7f, 0.9f}, 5100}, {"culled", {0.5f, 0.5f, 0.55f}, 4200}}}};
-        s.model.shaderErrors = {{"shaders/passes/gather.frag", 42,
-                                 "'irradiance' : undeclared "
-                                 "identifier"}};
+        s.model.shaderErrors = {
+            "shaders/passes/gather.frag:42: 'irradiance' : undeclared identifier"};
     });
     add("all-1000", 1000, 600, 1, [](Screen& s) {
         compare(s);
         s.model.instrument = Instrument::profiler;
         s.model.toasts = {{"picture written: /home/somebody/megaviews-1.png"}, {"short"}};
-        s.model.shaderErrors = {{"shaders/passes/gather.frag", 12, "undeclared"}};
+        s.model.shaderErrors = {"shaders/passes/gather.frag:12: undeclared"};
         s.model.legends = {{"Views that share a pair", "views", 1, 512, true, ramp(), {}}};
     });
     add("error", 1000, 600, 1, [](Screen& s) {
         s.model.error = "The scene cannot be read: /scene/nodes/3/mesh is 12, of 4 meshes.";
-        s.model.errorFile = "/data/scenes/broken.gltf";
         s.model.errorHint = "The scene shown before is kept. Check the file with a validator.";
     });
     add("help", 1280, 720, 1, [](Screen& s) { s.model.help = true; });
