@@ -36,6 +36,7 @@ constexpr int ownerOf(std::size_t side) { return static_cast<int>(side) + 1; }
 struct SideRecords {
     GatherRecords records;
     std::uint64_t maps = 0, views = 0;
+    std::optional<double> clampDistance;
 };
 
 // A side's maps of the views that a set of samples has of its own.

@@ -48,6 +48,9 @@ std::vector<MemoryUse> FrameRenderer::Impl::memory() const {
             const SetMaps& own = *side->setMaps;
             gather += own.records.records.records.bytes();
             setMaps += own.statistics.mapBytes + own.statistics.queueBytes;
+            if (own.visibility) {
+                for (const MemoryUse& use : own.visibility->memory()) setMaps += use.usedBytes;
+            }
         }
         gather += side->gathered.bytes() + side->irradiance.bytes() + side->unfiltered.bytes();
         pictureBytes += side->radiance.bytes() + side->display.bytes() + side->points.bytes() +

@@ -55,6 +55,7 @@ bool FrameRenderer::Impl::makeSetMaps(const Settings& settings, Side& side) {
     if (!own.visibility || own.method != wanted.method) {
         own.visibility = mv::makeVisibility(wanted.method, results);
         own.method = wanted.method;
+        own.records = {};  // of the maps of another, whose versions count from 1, too
     }
     TracedViews& s = *views.ofSet;
     const MapTree from = treeOfMaps(settings, wanted, s);
@@ -95,11 +96,14 @@ SetLight FrameRenderer::Impl::lightOfSet(const Settings& settings, int n, const 
         cullFor(settings, of, light.cullTree, light.viewsVersion);
     }
     SideRecords& recorded = own ? maps->records : side.records;
-    if (recorded.maps != light.mapsVersion || recorded.views != light.viewsVersion) {
+    const std::optional<double> clampDistance = settings.gather.clampDistance;
+    if (recorded.maps != light.mapsVersion || recorded.views != light.viewsVersion ||
+        recorded.clampDistance != clampDistance) {
         gatherPass.record(light.mapHierarchy(), light.maps(), light.mapViews, profiler,
                           recorded.records);
         recorded.maps = light.mapsVersion;
         recorded.views = light.viewsVersion;
+        recorded.clampDistance = clampDistance;
     }
     return light;
 }

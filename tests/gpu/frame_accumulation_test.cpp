@@ -109,6 +109,8 @@ TEST_F(Accumulation, RepeatsItselfByteForByte) {
 TEST_F(Accumulation, EveryChangeOfWhatIsGatheredBeginsAnew) {
     const std::vector<std::pair<const char*, void (*)(Settings&, FrameInput&)>> changes = {
         {"camera", [](Settings&, FrameInput& i) { i.camera.position.x += 0.01f; }},
+        // Before particles, which have no clamp of their own.
+        {"clamp", [](Settings& s, FrameInput&) { s.gather.clampDistance = 0.3; }},
         {"light scale", [](Settings& s, FrameInput&) { s.scene.lightScale = 2; }},
         {"sky", [](Settings& s, FrameInput&) { s.scene.environment.source = "white"; }},
         {"seed", [](Settings& s, FrameInput&) { s.seed = 1; }},
@@ -120,7 +122,6 @@ TEST_F(Accumulation, EveryChangeOfWhatIsGatheredBeginsAnew) {
         {"scale", [](Settings& s, FrameInput&) { s.gather.cull.scale = 2; }},
         {"cull level", [](Settings& s, FrameInput&) { s.gather.cull.level = 3; }},
         {"cutoff", [](Settings& s, FrameInput&) { s.gather.cull.cutoff = 0.5; }},
-        {"clamp", [](Settings& s, FrameInput&) { s.gather.clampDistance = 0.02; }},
         {"bias", [](Settings& s, FrameInput&) { s.gather.bias = 0.5; }},
         {"filter", [](Settings& s, FrameInput&) { s.gather.filter = false; }},
         {"map resolution", [](Settings& s, FrameInput&) { s.side[0].maps.resolution = 8; }},
