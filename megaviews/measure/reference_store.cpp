@@ -204,8 +204,11 @@ std::string ReferenceStore::description(const Scene& scene, const ReferenceReque
              std::to_string(s.resolution.width) + "x" + std::to_string(s.resolution.height)) +
         describeMoment(s, request.moment);
     // Of other scenes both are the same.
-    const bool gloss = s.scene.materials == Materials::full && scene.needsFull();
-    if (gloss) text += line("materials", "full, broad gloss by direction");
+    const bool full = s.scene.materials == Materials::full &&
+                      std::ranges::any_of(scene.materials, [](const Material& m) {
+                          return m.isGlossy() || m.tints() || m.normalTexture >= 0;
+                      });
+    if (full) text += line("materials", "full, broad gloss by direction");
     if (paths) {
         return text + line("bounces", std::to_string(s.views.bounces)) +
                line("reference-samples", std::to_string(s.side[0].referenceSamples));
