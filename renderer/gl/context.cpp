@@ -12,6 +12,7 @@
 #include <array>
 #include <cassert>
 #include <cstdlib>
+#include <mutex>
 #include <optional>
 #include <set>
 #include <string_view>
@@ -27,6 +28,8 @@ namespace mv::gl {
 namespace {
 
 std::optional<Limits> currentLimits;
+// What messages read and write: a driver may send them from threads of its own.
+std::mutex messages;
 std::uint64_t errorCount = 0;
 std::string currentPass;  // of PassScope
 std::set<GLuint> toldOf;  // messages of medium severity
@@ -35,6 +38,7 @@ std::string firstError;
 void GLAPIENTRY onDebugMessage(GLenum source, GLenum type, GLuint id, GLenum severity,
                                GLsizei length, const GLchar* text, const void*) {
     if (source == GL_DEBUG_SOURCE_SHADER_COMPILER) return;  // becomes an exception of Program
+    const std::lock_guard lock(messages);
     std::string message(text, static_cast<std::size_t>(std::max(length, 0)));
     if (!currentPass.empty()) message = "in pass \"" + currentPass + "\": " + message;
     if (type == GL_DEBUG_TYPE_ERROR) {
@@ -267,9 +271,12 @@ void initialise(const std::string& platform, const ContextWish& wish) {
     }
 #endif
 
-    errorCount = 0;
-    firstError.clear();
-    toldOf.clear();
+    {
+        const std::lock_guard lock(messages);
+        errorCount = 0;
+        firstError.clear();
+        toldOf.clear();
+    }
     glEnable(GL_DEBUG_OUTPUT);
 #ifndef NDEBUG
     glEnable(GL_DEBUG_OUTPUT_SYNCHRONOUS);
@@ -286,11 +293,18 @@ void initialise(const std::string& platform, const ContextWish& wish) {
     spdlog::debug("OpenGL {} on {} ({})", l.version, l.renderer, platform);
 }
 
-std::uint64_t reportedErrors() { return errorCount; }
+std::uint64_t reportedErrors() {
+    const std::lock_guard lock(messages);
+    return errorCount;
+}
 
-std::string namePass(std::string name) { return std::exchange(currentPass, std::move(name)); }
+std::string namePass(std::string name) {
+    const std::lock_guard lock(messages);
+    return std::exchange(currentPass, std::move(name));
+}
 
 void throwReportedError() {
+    const std::lock_guard lock(messages);
     if (firstError.empty()) return;
     const std::string message = std::exchange(firstError, {});
     throw Error(ExitCode::graphics, "OpenGL error: " + message);

@@ -89,8 +89,10 @@ vec3 mappedNormal(vec3 n, sampler2D map, float scale) {
     vec2 lean = texture(map, uvAt).xy * 2.0 - 1.0;
     float up = sqrt(max(1.0 - dot(lean, lean), 0.01));
     lean *= scale;
-    vec3 px = cross(dFdy(positionAt), n);
-    vec3 py = cross(n, dFdx(positionAt));
+    vec3 across = dFdx(positionAt);
+    vec3 along = dFdy(positionAt);
+    vec3 px = cross(along, n);
+    vec3 py = cross(n, across);
     vec2 dx = dFdx(uvAt);
     vec2 dy = dFdy(uvAt);
     vec3 right = px * dx.x + py * dy.x;
@@ -100,7 +102,7 @@ vec3 mappedNormal(vec3 n, sampler2D map, float scale) {
     right *= inversesqrt(size);
     down *= inversesqrt(size);
     // A mirrored pixel turns both.
-    float side = dot(cross(dFdx(positionAt), dFdy(positionAt)), n) < 0.0 ? -1.0 : 1.0;
+    float side = dot(cross(across, along), n) < 0.0 ? -1.0 : 1.0;
     vec3 m = side * (right * lean.x - down * lean.y) + n * up;
     return m * inversesqrt(max(dot(m, m), 1e-30));
 }

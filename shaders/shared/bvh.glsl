@@ -55,8 +55,7 @@ MV_FN vec4 sampleTraceTexture(MV_BVH_PARAMS uint textureIndex, vec2 uv) {
 
 // ---------------------------------------------------------------- rays
 
-// 2 % of a leaf of the 1024^3 grid: how far VPLs and the starts of rays are lifted off their
-// surface.
+// 2 % of a leaf of the 1024^3 grid: how far VPLs are lifted off their surface.
 MV_CONST float kVplOffset = 0.02f / 1024.0f;
 
 // How far the starts of rays are lifted, kLeastLift times a power of two (rayLift() of
