@@ -70,7 +70,7 @@ std::unique_ptr<SceneAssets> loadAssetsWithoutHierarchy(const std::string& name,
     const auto load = [&] {
         assets->scene = loadScene(name, options);
         // Trees are built where the surface of what moves is largest, whatever time is asked for.
-        if (assets->scene.moving) poseScene(assets->scene, assets->scene.moving->referenceS);
+        poseForTrees(assets->scene);
         assets->bvh = TriangleBvh::build(assets->scene, progress);
     };
     load();
@@ -100,7 +100,10 @@ std::unique_ptr<SceneAssets> loadAssetsWithoutHierarchy(const std::string& name,
 
 void buildHierarchy(SceneAssets& assets, const Settings& settings,
                     const std::filesystem::path& cacheDirectory, const Progress& progress) {
-    if (assets.scene.moving) assets.pose(assets.scene.moving->referenceS);
+    if (assets.scene.moving) {
+        poseForTrees(assets.scene);
+        assets.bvh.refit();
+    }
     const int levels = settings.scene.octreeDepth;
     assets.hierarchy =
         settings.scene.tree == SceneTree::binary

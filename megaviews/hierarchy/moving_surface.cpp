@@ -1,6 +1,8 @@
 #include "megaviews/hierarchy/moving_surface.h"
 
+#include <algorithm>
 #include <span>
+#include <vector>
 
 namespace mv {
 
@@ -53,6 +55,9 @@ SurfaceSums MovingSurface::sumsOf(const Scene& scene, std::size_t leaf) const {
         fragments.push_back(
             fragmentOf(scene, piece, std::span(corners).subspan(piece.firstCorner, piece.corners)));
     }
+    // What has no size is where nothing is seen of it, perhaps far from the rest.
+    const auto isFlat = [](const Fragment& f) { return !(f.area > 0); };
+    if (!std::ranges::all_of(fragments, isFlat)) std::erase_if(fragments, isFlat);
     return SurfaceSums::ofFragments(fragments);
 }
 

@@ -5,6 +5,9 @@
 
 #include <algorithm>
 #include <atomic>
+#include <limits>
+#include <numeric>
+#include <set>
 #include <span>
 
 #include "megaviews/core/hash.h"
@@ -119,10 +122,10 @@ std::vector<Draw> drawsAt(const RiggedScene& rigged, PoseTime time) {
     return drawsAt(rigged.rig, rigged.primitives, rigged.skins, rigged.draws, time);
 }
 
-// Where what moves goes in all of the animation, and when it is largest.
+// Where what moves goes in all of the animation, and when each draw is at its reference.
 struct Way {
     WorldBox box;
-    double referenceS = 0;
+    std::vector<double> referenceS;
 };
 Way wayOf(const RiggedScene& rigged, std::size_t firstMoving, int animation, double durationS) {
     std::size_t vertices = 1;
@@ -131,7 +134,7 @@ Way wayOf(const RiggedScene& rigged, std::size_t firstMoving, int animation, dou
     }
     const std::size_t times = std::clamp(kVerticesPosed / vertices, kFewestTimes, kMostTimes);
     std::vector<WorldBox> boxes(times);
-    std::vector<double> areas(times, 0);
+    std::vector<std::vector<double>> areas(times);  // of each draw
     const auto timeOf = [&](std::size_t k) {
         return durationS * static_cast<double>(k) / static_cast<double>(times);
     };
@@ -140,17 +143,26 @@ Way wayOf(const RiggedScene& rigged, std::size_t firstMoving, int animation, dou
         for (const Draw& draw :
              drawsAt(rigged.rig, rigged.primitives, rigged.skins, moving, {animation, timeOf(k)})) {
             boxes[k].add(worldBox(draw));
-            areas[k] += worldArea(draw);
+            areas[k].push_back(worldArea(draw));
         }
     });
     Way way;
     for (const WorldBox& box : boxes) way.box.add(box);
-    // Not for rounding: of times that are alike the first.
-    std::size_t reference = 0;
-    for (std::size_t k = 1; k < times; ++k) {
-        if (areas[k] > 1.001 * areas[reference]) reference = k;
+    const auto largest = [&](const auto& areaAt) {
+        std::size_t reference = 0;
+        for (std::size_t k = 1; k < times; ++k) {  // not for rounding: of times alike the first
+            if (areaAt(k) > 1.001 * areaAt(reference)) reference = k;
+        }
+        return reference;
+    };
+    const std::size_t common = largest(
+        [&](std::size_t k) { return std::accumulate(areas[k].begin(), areas[k].end(), 0.0); });
+    constexpr double kSmall = 0.25;  // of the largest surface of a draw
+    for (std::size_t i = 0; i < moving.size(); ++i) {
+        const std::size_t own = largest([&](std::size_t k) { return areas[k][i]; });
+        const bool isSmall = areas[common][i] < kSmall * areas[own][i];
+        way.referenceS.push_back(timeOf(isSmall ? own : common));
     }
-    way.referenceS = timeOf(reference);
     return way;
 }
 
@@ -222,12 +234,10 @@ LeftOut assembleGeometry(RiggedScene rigged, PoseTime time, double durationS,
     return leftOut;
 }
 
-bool poseScene(Scene& scene, double timeS) {
-    if (!scene.moving) return false;
+namespace {
+
+void place(std::span<const Draw> draws, double time, Scene& scene) {
     const MovingGeometry& moving = *scene.moving;
-    const double time = loopTime(timeS, moving.durationS);
-    if (time == scene.poseS) return false;
-    const std::vector<Draw> draws = drawsAt(moving.rigged, {moving.animation, time});
     tbb::parallel_for(std::size_t{0}, draws.size(), [&](std::size_t i) {
         const ScenePiece piece = makePiece(draws[i], scene.root, true);
         const glm::uvec2 first = moving.first[i];
@@ -241,7 +251,30 @@ bool poseScene(Scene& scene, double timeS) {
     scene.poseS = time;
     ++scene.poseNumber;
     scene.contentHash = hashAt(moving.contentHash, {moving.animation, time});
+}
+
+}  // namespace
+
+bool poseScene(Scene& scene, double timeS) {
+    if (!scene.moving) return false;
+    const MovingGeometry& moving = *scene.moving;
+    const double time = loopTime(timeS, moving.durationS);
+    if (time == scene.poseS) return false;
+    place(drawsAt(moving.rigged, {moving.animation, time}), time, scene);
     return true;
+}
+
+void poseForTrees(Scene& scene) {
+    if (!scene.moving) return;
+    const MovingGeometry& moving = *scene.moving;
+    std::vector<Draw> draws(moving.referenceS.size());
+    for (const double time : std::set(moving.referenceS.begin(), moving.referenceS.end())) {
+        const std::vector<Draw> then = drawsAt(moving.rigged, {moving.animation, time});
+        for (std::size_t i = 0; i < draws.size(); ++i) {
+            if (moving.referenceS[i] == time) draws[i] = then[i];
+        }
+    }
+    place(draws, std::numeric_limits<double>::quiet_NaN(), scene);  // no time of all
 }
 
 }  // namespace mv

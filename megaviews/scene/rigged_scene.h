@@ -26,7 +26,7 @@ struct MovingGeometry {
     RiggedScene rigged;  // of its draws, those that move
     int animation = 0;
     double durationS = 0;
-    double referenceS = 0;                   // when its surface is largest
+    std::vector<double> referenceS;          // of each draw: when trees are built of it
     std::vector<glm::uvec2> first;           // vertex and triangle of each draw in the scene
     std::uint32_t vertex = 0, triangle = 0;  // the first that move
     glm::vec3 min{0}, max{0};                // box over the whole animation, root-cube units
@@ -53,5 +53,9 @@ LeftOut assembleGeometry(RiggedScene rigged, PoseTime time, double durationS,
 // poseNumber. False if it stands there already, or nothing moves.
 // A triangle hierarchy and an octree of the scene follow by their refit().
 bool poseScene(Scene& scene, double timeS);
+
+// Moves what moves to where trees are built of it: all to the time at which its surface is largest,
+// but what is small then, such as one of two things shown in turn, to a time of its own.
+void poseForTrees(Scene& scene);
 
 }  // namespace mv

@@ -213,6 +213,39 @@ TEST(GltfAnimation, GeometryStandsInThePoseOfTheTime) {
     }
 }
 
+// Of two things shown in turn trees are built with both.
+TEST(GltfAnimation, TreesHoldWhatHasNoSizeWhileTheRestIsLargest) {
+    GltfBuilder b;
+    const auto triangle = b.positions({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}});
+    b.primitive({{"POSITION", triangle}});
+    const int other = b.add("nodes", {{"mesh", 0}, {"translation", {3, 0, 0}}});
+    b.json["scenes"][0]["nodes"].push_back(other);
+    animate(b, 0, "scale", {0, 1, 2}, {2, 2, 2, 0, 0, 0, 0, 0, 0}, "STEP");
+    animate(b, other, "scale", {0, 1, 2}, {0, 0, 0, 1, 1, 1, 1, 1, 1}, "STEP");
+    Json& channels = b.json["animations"][0];
+    channels["samplers"].push_back(b.json["animations"][1]["samplers"][0]);
+    channels["channels"].push_back(b.json["animations"][1]["channels"][0]);
+    channels["channels"][1]["sampler"] = 1;
+    b.json["animations"].erase(1);
+    Scene scene = testing::loadJson(b);
+    ASSERT_TRUE(scene.moving);
+    const auto area = [&](std::size_t t) {
+        const glm::uvec3 c = scene.triangles[t];
+        const glm::dvec3 a = scene.root.worldFromRoot(scene.positions[c.x]);
+        return 0.5 * glm::length(glm::cross(scene.root.worldFromRoot(scene.positions[c.y]) - a,
+                                            scene.root.worldFromRoot(scene.positions[c.z]) - a));
+    };
+    ASSERT_EQ(scene.triangles.size(), 2u);
+    poseScene(scene, 0.5);
+    EXPECT_NEAR(area(0), 2, 1e-5);
+    EXPECT_NEAR(area(1), 0, 1e-9);
+    poseForTrees(scene);
+    EXPECT_NEAR(area(0), 2, 1e-5);
+    EXPECT_NEAR(area(1), 0.5, 1e-5);
+    poseScene(scene, 0.5);
+    EXPECT_NEAR(area(1), 0, 1e-9) << "and every pose comes back";
+}
+
 // Without normals each triangle has vertices of its own; they stay in their order, so that textures
 // and motion vectors do, where an animation turns it inside out. Its winding follows.
 TEST(GltfAnimation, VerticesKeepTheirOrderWhereThingsTurnInsideOut) {
