@@ -503,7 +503,7 @@ TEST(Headless, SaysWhatThereIsNotToLookAt) {
     MV_SKIP_WITHOUT_GL(r);
     EXPECT_EQ(r.code, 0) << r.err;
     for (const char* said :
-         {"--pick-a 999999: no view lives in this slot\n", "--step 32: the last step is ",
+         {"--pick-a 999999: no view in this slot has a map\n", "--step 32: the last step is ",
           "--pair-scene 9999999 --pair-view 0: "}) {
         EXPECT_NE(r.err.find(said), std::string::npos) << said << r.err;
     }
