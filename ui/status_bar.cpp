@@ -82,7 +82,7 @@ std::vector<Part> rightParts(Context& c) {
              "While something moves: " + std::to_string(d.resolution.width) + " x " +
                  std::to_string(d.resolution.height) + " pixels, maps of " +
                  std::to_string(d.side[0].maps.resolution) + " texels, " +
-                 std::to_string(d.gather.samples) + " samples" +
+                 (d.gather.samples > 0 ? std::to_string(d.gather.samples) : "all") + " samples" +
                  (scale > 1 ? " for every " + std::to_string(scale * scale) + " of them."
                             : " a pixel.")});
     }

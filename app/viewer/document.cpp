@@ -66,8 +66,9 @@ void Document::lowerQuality() {
 }
 
 std::string Document::notice() const {
+    const int samples = settings_.gather.samples;
     return fmt::format("{} octree levels, {} samples; draft while moving",
-                       settings_.scene.octreeDepth, settings_.gather.samples);
+                       settings_.scene.octreeDepth, samples > 0 ? std::to_string(samples) : "all");
 }
 
 Settings Document::draftOf(Settings settings, double pixels) const {

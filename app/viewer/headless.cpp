@@ -352,13 +352,13 @@ void HeadlessRun::drawWindow(const std::string& file) {
 void HeadlessRun::writeResults() {
     const auto lock = kept_.lock();  // once, and to the end
     if (finished_.statistics.frames() > 0) {
+        writeState();
         writeViews();
         writeMaps();
         if (!options_.saveSceneFile.empty()) {
             session_.saveScene(options_.saveSceneFile);
             announce(options_.saveSceneFile);
         }
-        writeState();
     }
     statisticsWritten_ = true;
     writeStatistics(interrupted());
@@ -418,8 +418,8 @@ void HeadlessRun::keepFinished() {
 
 void HeadlessRun::keep() {
     if (!finished_.assets || statisticsWritten_) return;
-    writeViews();
     writeState();
+    writeViews();
     statisticsWritten_ = true;
     writeStatistics(true);
     // What takes longest.

@@ -161,11 +161,14 @@ double Session::foreseenS() const {
     const Settings &draft = picture_.effective(), &whole = picture_.wanted();
     // A sample costs as much as so many candidates that are weighed for it (llvmpipe, atrium).
     constexpr int kCandidatesOfSample = 40;
-    const auto samples = [](const Settings& s) {
-        return pixelsOf(s) * s.gather.samples * (kCandidatesOfSample + s.gather.candidates) /
-               (s.gather.cull.scale * s.gather.cull.scale);
-    };
     const FrameStatistics& f = statistics();
+    const auto samples = [&](const Settings& s) {
+        const double pixels = pixelsOf(s) / (s.gather.cull.scale * s.gather.cull.scale);
+        if (s.gather.samples == 0) {  // all, of which each is its own candidate
+            return pixels * static_cast<double>(f.viewsAlive) * (kCandidatesOfSample + 1);
+        }
+        return pixels * s.gather.samples * (kCandidatesOfSample + s.gather.candidates);
+    };
     double ms = f.frameMs;
     for (std::size_t i = 0; i < f.methods.size(); ++i) {
         const double finer =
