@@ -25,7 +25,7 @@ RgbImage readImage(const std::string& file) {
         std::string text;
         for (const std::uint64_t n : shape) text += (text.empty() ? "" : "x") + std::to_string(n);
         throw Error(ExitCode::input, "'" + file + "' is no picture: its shape is " + text +
-                                         ", not HxWx3 of at most a Gi of pixels");
+                                         ", not HxWx3 of at most 2^30 pixels");
     }
     return {static_cast<int>(shape[1]), static_cast<int>(shape[0]), std::move(array.elements)};
 }

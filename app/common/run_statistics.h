@@ -48,8 +48,8 @@ nlohmann::ordered_json graphicsJson();  // of the current context
 nlohmann::ordered_json hostJson();
 nlohmann::ordered_json sceneJson(const SceneAssets& assets);
 
-// Written aside and renamed; Error(ExitCode::output) names the file.
 std::string textOf(const nlohmann::ordered_json& json);
+// Written aside and renamed; Error(ExitCode::output) names the file.
 void writeJson(const std::string& file, const nlohmann::ordered_json& json);
 
 }  // namespace mv

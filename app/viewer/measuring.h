@@ -84,9 +84,8 @@ class Measuring {
     void fillPictures(const FrameRenderer& renderer, const Picture& picture, ui::ErrorsData& data);
 
     const MeasureOptions options_;
-    std::shared_ptr<const ReferenceImage> given_;  // by --reference
-    std::shared_ptr<const ReferenceImage>
-        reference_;  // the errors panel's: a file or what was kept
+    // That of --reference, and that of the errors panel: a file or a picture that was kept.
+    std::shared_ptr<const ReferenceImage> given_, reference_;
     std::string referenceName_;
     // Camera and scene name of a picture that was kept.
     std::optional<FrameCamera> keptFrom_;

@@ -41,9 +41,9 @@ class SceneSlot {
     // Puts a scene that is ready into the renderer; the old one goes only when the new one stands
     // there. Throws the loader's and the renderer's errors, once; then the old one stays.
     struct Change {
-        bool sameFile = false;   // as that on screen
-        bool sameScene = false;  // and loaded anew: camera and history stay
-        bool opened = false;
+        bool sameFile = false;          // as that on screen
+        bool sameScene = false;         // and loaded anew: camera and history stay
+        bool opened = false;            // by open()
         std::optional<State> restored;  // with it
     };
     std::optional<Change> take(FrameRenderer& renderer);

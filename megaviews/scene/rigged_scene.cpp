@@ -54,6 +54,15 @@ bool fits(const RootCube& cube, const WorldBox& box, const RootCube& around) {
     return cube.edge <= 64 * around.edge;
 }
 
+// What a pose decides of a piece. first: its vertex and triangle in the scene.
+void placePiece(const ScenePiece& piece, glm::uvec2 first, Scene& scene) {
+    std::copy(piece.positions.begin(), piece.positions.end(), scene.positions.begin() + first.x);
+    std::copy(piece.normals.begin(), piece.normals.end(), scene.normals.begin() + first.x);
+    for (std::size_t t = 0; t < piece.triangles.size(); ++t) {
+        scene.triangles[first.y + t] = piece.triangles[t] + first.x;
+    }
+}
+
 // Appends the pieces in order; an optional array exists if any piece has it. Returns each piece's
 // first vertex and first triangle, and the end.
 std::vector<glm::uvec2> join(std::span<const ScenePiece> pieces, std::span<const Draw> draws,
@@ -77,17 +86,14 @@ std::vector<glm::uvec2> join(std::span<const ScenePiece> pieces, std::span<const
     tbb::parallel_for(std::size_t{0}, pieces.size(), [&](std::size_t i) {
         const ScenePiece& piece = pieces[i];
         const auto at = static_cast<std::ptrdiff_t>(first[i].x);
-        std::copy(piece.positions.begin(), piece.positions.end(), scene.positions.begin() + at);
-        std::copy(piece.normals.begin(), piece.normals.end(), scene.normals.begin() + at);
+        placePiece(piece, first[i], scene);
         std::copy(piece.colors.begin(), piece.colors.end(),
                   scene.colors.begin() + (colors ? at : 0));
         std::copy(piece.uvs.begin(), piece.uvs.end(), scene.uvs.begin() + (uvs ? at : 0));
         std::copy(piece.emissiveUvs.begin(), piece.emissiveUvs.end(),
                   scene.emissiveUvs.begin() + (emissiveUvs ? at : 0));
-        for (std::size_t t = 0; t < piece.triangles.size(); ++t) {
-            scene.triangles[first[i].y + t] = piece.triangles[t] + first[i].x;
-            scene.triangleMaterials[first[i].y + t] = draws[i].primitive->material;
-        }
+        std::fill_n(scene.triangleMaterials.begin() + first[i].y, piece.triangles.size(),
+                    draws[i].primitive->material);
     });
     return first;
 }
@@ -239,14 +245,7 @@ namespace {
 void place(std::span<const Draw> draws, double time, Scene& scene) {
     const MovingGeometry& moving = *scene.moving;
     tbb::parallel_for(std::size_t{0}, draws.size(), [&](std::size_t i) {
-        const ScenePiece piece = makePiece(draws[i], scene.root, true);
-        const glm::uvec2 first = moving.first[i];
-        const auto at = static_cast<std::ptrdiff_t>(first.x);
-        std::copy(piece.positions.begin(), piece.positions.end(), scene.positions.begin() + at);
-        std::copy(piece.normals.begin(), piece.normals.end(), scene.normals.begin() + at);
-        for (std::size_t t = 0; t < piece.triangles.size(); ++t) {
-            scene.triangles[first.y + t] = piece.triangles[t] + first.x;
-        }
+        placePiece(makePiece(draws[i], scene.root, true), moving.first[i], scene);
     });
     scene.poseS = time;
     ++scene.poseNumber;
