@@ -319,7 +319,8 @@ void viewsPanel(Context& c) {
     settingRow(c, "show-views");
     list(c);
     histogram(c, "By bounce", "##bounces", "views", "bounce", v.perBounce, 0);
-    histogram(c, "Leaves by the views they hold", "##leaves", "leaves", "views", v.leavesByViews, 1);
+    histogram(c, "Leaves by the views they hold", "##leaves", "leaves", "views", v.leavesByViews,
+              1);
 }
 
 }  // namespace mv::ui
